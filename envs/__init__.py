@@ -1,0 +1,1 @@
+"""Turns a floor plan into a simulated world, and wheel commands into sensor messages."""

@@ -1,0 +1,1 @@
+"""Turns a world, a mapper and a navigator into a scored episode."""

@@ -1,0 +1,36 @@
+"""What every mapper does: take the messages of one control period, keep a pose and a grid."""
+
+from collections.abc import Sequence
+from typing import Protocol
+
+from mapping.geometry import Pose
+from mapping.grid import OccupancyGrid
+from mapping.messages import Imu, LaserScan, Odometry
+
+
+class Mapper(Protocol):
+    """Maps while it is driven around; sees sensor messages only, never the truth."""
+
+    @property
+    def grid(self) -> OccupancyGrid:
+        """The map so far."""
+
+    @property
+    def pose_map(self) -> Pose:
+        """The newest pose of base_footprint in the map frame ``(3,)``."""
+
+    @property
+    def updates(self) -> int:
+        """How many scans went into the map."""
+
+    def update(
+        self, scan: LaserScan | None, odometry: Sequence[Odometry], imu: Sequence[Imu] = ()
+    ) -> None:
+        """Take the messages of one control period.
+
+        Args:
+            scan: The newest whole scan, or None when no new one arrived. A scan whose stamp was
+                seen before is used only once.
+            odometry: Odometry messages since the last call, oldest first; may be empty.
+            imu: IMU messages since the last call, oldest first; may be empty.
+        """

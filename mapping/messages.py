@@ -1,0 +1,131 @@
+"""The sensor messages, with the field names of ROS, and how they lie in an observation.
+
+An observation of ``envs:TurtleBot3Burger-v0`` is a dict of arrays; its rows become messages here,
+so that mappers and navigators see the same types from the simulator and from a recorded log.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mapping.burger import LIDAR_BEAMS, LIDAR_RANGE_MAX, LIDAR_RANGE_MIN, LIDAR_SCAN_TIME
+from mapping.geometry import Pose
+
+ODOMETRY_COLUMNS = ("stamp", "x", "y", "yaw", "linear_x", "angular_z")
+IMU_COLUMNS = ("stamp", "qx", "qy", "qz", "qw", "wx", "wy", "wz", "ax", "ay", "az")
+
+Observation = Mapping[str, NDArray[Any]]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Twist:
+    """A velocity in the robot's own frame, geometry_msgs/Twist of a differential drive."""
+
+    linear_x: float = 0.0
+    """Forward speed [m/s]."""
+    angular_z: float = 0.0
+    """Turn rate [rad/s], counter-clockwise positive."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LaserScan:
+    """One turn of a lidar, sensor_msgs/LaserScan.
+
+    The scan is rolling: beam ``i`` points to ``angle_min + i * angle_increment`` in the sensor
+    frame and is taken at ``stamp + i * time_increment``, from where the sensor then was.
+
+    A range is a distance [m], or ``+inf``: nothing within ``range_max`` (the only value that
+    clears space to the full range), or ``0.0``, NaN, ``-inf``: the beam failed and tells nothing
+    (REP-117, and the LDS-01 driver's 0.0).
+    """
+
+    stamp: float
+    """Time of the first beam [s]."""
+    ranges: NDArray[np.float32]
+    """Ranges ``(n,)`` [m]."""
+    angle_min: float = 0.0
+    angle_increment: float = 2.0 * np.pi / LIDAR_BEAMS
+    time_increment: float = LIDAR_SCAN_TIME / LIDAR_BEAMS
+    scan_time: float = LIDAR_SCAN_TIME
+    range_min: float = LIDAR_RANGE_MIN
+    range_max: float = LIDAR_RANGE_MAX
+
+    @property
+    def angle_max(self) -> float:
+        """Direction of the last beam [rad]."""
+        return self.angle_min + (len(self.ranges) - 1) * self.angle_increment
+
+    @property
+    def angles(self) -> NDArray[np.float64]:
+        """Direction of every beam ``(n,)`` in the sensor frame [rad]."""
+        return self.angle_min + np.arange(len(self.ranges)) * self.angle_increment
+
+    @property
+    def beam_stamps(self) -> NDArray[np.float64]:
+        """Time of every beam ``(n,)`` [s]."""
+        return self.stamp + np.arange(len(self.ranges)) * self.time_increment
+
+    @classmethod
+    def from_observation(cls, observation: Observation) -> "LaserScan | None":
+        """The newest whole scan; a range at ``range_max`` becomes ``+inf`` again.
+
+        Returns None when no scan is complete yet (``scan_stamp`` is negative).
+        """
+        stamp = float(observation["scan_stamp"][0])
+        if stamp < 0.0:
+            return None
+        ranges = np.array(observation["ranges"], dtype=np.float32)
+        ranges[ranges >= np.float32(LIDAR_RANGE_MAX)] = np.inf
+        return cls(stamp=stamp, ranges=ranges)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Odometry:
+    """What the wheel encoders say, nav_msgs/Odometry in the plane."""
+
+    stamp: float
+    """Time [s]."""
+    pose_odom: Pose
+    """Pose of base_footprint ``(3,)`` in the frame where the robot started."""
+    twist: Twist
+    """Velocity in base_footprint."""
+
+    @classmethod
+    def from_observation(cls, observation: Observation) -> "Sequence[Odometry]":
+        """Every odometry message that arrived in the last control period, oldest first."""
+        return [
+            cls(stamp=row[0], pose_odom=pose, twist=Twist(linear_x=row[4], angular_z=row[5]))
+            for row, pose in zip(
+                observation["odometry"].tolist(), observation["odometry"][:, 1:4], strict=True
+            )
+        ]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Imu:
+    """What the inertial unit says, sensor_msgs/Imu."""
+
+    stamp: float
+    """Time [s]."""
+    orientation: NDArray[np.float64]
+    """Quaternion ``(4,)`` x, y, z, w as ROS orders it; its yaw drifts (no magnetometer)."""
+    angular_velocity: NDArray[np.float64]
+    """Gyroscope ``(3,)`` [rad/s] about x, y, z of imu_link."""
+    linear_acceleration: NDArray[np.float64]
+    """Accelerometer ``(3,)`` [m/s2]; at rest it reads +9.81 along z."""
+
+    @classmethod
+    def from_observation(cls, observation: Observation) -> "Sequence[Imu]":
+        """Every IMU message that arrived in the last control period, oldest first."""
+        return [
+            cls(
+                stamp=float(row[0]),
+                orientation=row[1:5],
+                angular_velocity=row[5:8],
+                linear_acceleration=row[8:11],
+            )
+            for row in observation["imu"]
+        ]
