@@ -1,0 +1,225 @@
+"""Runs one episode: an agent drives the Gymnasium environment until it is done or out of time."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from time import perf_counter
+from typing import Any, Literal
+
+import gymnasium
+import numpy as np
+from numpy.typing import NDArray
+
+from envs.floor_plan import FloorPlan
+from envs.truth import truth_of_plan
+from envs.worlds import load_world
+from mapping.compare import CoverageMeter
+from mapping.errors import TestbedError
+from mapping.grid import GridConfig, OccupancyGrid
+from mapping.mappers import make_mapper
+from mapping.messages import ODOMETRY_COLUMNS
+from mapping.truth import TruthMap
+from nav.agent import MappingAgent
+from nav.navigator import RUNNING, DroppedFrontier
+from nav.navigators import make_navigator
+
+ENVIRONMENT = "envs:TurtleBot3Burger-v0"
+CONTROL_PERIOD = 0.1
+TIME_LIMIT = "time_limit"
+INTERRUPTED = "interrupted"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EpisodeConfig:
+    """Everything that defines an episode; the same config gives the same episode."""
+
+    world: str = "lim_room"
+    """A built-in world by name, or a floor plan file: YAML, map_server YAML, HouseExpo JSON, text
+    maze."""
+    mapper: str = "ogm"
+    """ogm or occgridmapp."""
+    navigator: str = "frontier"
+    """frontier or reactive."""
+    odometry: str = "typical"
+    """Wheel and odometry errors: ideal, typical, poor, or truth (no error at all)."""
+    odometry_yaw: Literal["encoders", "imu"] = "encoders"
+    """Where odometry takes its yaw from: encoders as the thesis, imu as ROBOTIS."""
+    lidar: str = "datasheet"
+    """Lidar noise: datasheet, worst_case, measured or ideal."""
+    resolution: float = 0.01
+    """Edge of a map cell [m]."""
+    seed: int = 0
+    """Seed of every random number of the episode."""
+    time_limit: float = 1800.0
+    """Simulated time after which the episode ends [s]."""
+
+    def __post_init__(self) -> None:
+        """Refuse figures that make no episode."""
+        if self.seed < 0:
+            raise TestbedError(f"seed: {self.seed}; must be 0 or more")
+        if not CONTROL_PERIOD <= self.time_limit < np.inf:
+            raise TestbedError(f"time_limit: {self.time_limit} s; must be finite and above 0.1")
+        if not 0.002 <= self.resolution <= 0.5:
+            raise TestbedError(f"resolution: {self.resolution} m; must be 0.002 to 0.5")
+
+
+@dataclass(slots=True, kw_only=True)
+class Track:
+    """Where the robot was, believed to be and said to be, a row per control period."""
+
+    stamps: list[float] = field(default_factory=list)
+    pose_map: list[NDArray[np.float64]] = field(default_factory=list)
+    pose_world: list[NDArray[np.float64]] = field(default_factory=list)
+    pose_odom: list[NDArray[np.float64]] = field(default_factory=list)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Episode:
+    """What an episode left behind: the map, the tracks, the truth and the counts."""
+
+    config: EpisodeConfig
+    plan: FloorPlan
+    truth: TruthMap
+    grid: OccupancyGrid
+    track: Track
+    stop_reason: str
+    sim_time: float
+    """Simulated time at the end [s]."""
+    wall_time: float
+    """Wall time of the loop [s], without set-up and scoring."""
+    contacts: int
+    coverage_times: NDArray[np.float64]
+    """When coverage was measured ``(n,)`` [s]."""
+    coverages: NDArray[np.float64]
+    """Coverage at those times ``(n,)``."""
+    map_updates: int
+    scans_dropped: int
+    map_update_seconds: NDArray[np.float64]
+    """Wall time of each map update ``(n,)`` [s]."""
+    navigator_seconds: NDArray[np.float64]
+    """Wall time of each command ``(n,)`` [s]."""
+    dropped_frontiers: tuple[DroppedFrontier, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Progress:
+    """How an episode stands, told once a simulated second."""
+
+    time: float
+    """Simulated time [s]."""
+    coverage: float
+    grid: OccupancyGrid
+    pose_map: NDArray[np.float64]
+
+
+def run_episode(
+    config: EpisodeConfig,
+    on_progress: Callable[[Progress], None] | None = None,
+    *,
+    plan: FloorPlan | None = None,
+) -> Episode:
+    """Run one episode to its end; Ctrl-C ends it early and keeps what there is.
+
+    Args:
+        config: What to run.
+        on_progress: Called once a simulated second.
+        plan: A floor plan made in code, used in place of ``config.world``.
+
+    Raises:
+        TestbedError: If the config names something that does not exist or cannot be used.
+    """
+    plan = load_world(config.world) if plan is None else plan
+    agent = make_agent(config, plan)
+    truth = truth_of_plan(plan, resolution=agent.mapper.grid.resolution)
+    steps = round(config.time_limit / CONTROL_PERIOD)
+    environment = gymnasium.make(
+        ENVIRONMENT,
+        world=plan,
+        lidar=config.lidar,
+        odometry=config.odometry,
+        odometry_yaw=config.odometry_yaw,
+        max_episode_steps=steps,
+    )
+    try:
+        return _drive(config, plan, truth, agent, environment, on_progress)
+    finally:
+        environment.close()
+
+
+def make_agent(config: EpisodeConfig, plan: FloorPlan) -> MappingAgent:
+    """The mapper and navigator that a config names; the start pose is known to the mapper."""
+    mapper = make_mapper(
+        config.mapper,
+        start_pose_map=plan.start,
+        resolution=config.resolution,
+    )
+    return MappingAgent(mapper, make_navigator(config.navigator))
+
+
+def _drive(
+    config: EpisodeConfig,
+    plan: FloorPlan,
+    truth: TruthMap,
+    agent: MappingAgent,
+    environment: gymnasium.Env[Any, Any],
+    on_progress: Callable[[Progress], None] | None,
+) -> Episode:
+    meter = CoverageMeter(truth)
+    track = Track()
+    coverages: list[tuple[float, float]] = []
+    observation, info = environment.reset(seed=config.seed)
+    stop_reason, next_report = RUNNING, 0.0
+    started = perf_counter()
+    try:
+        while stop_reason == RUNNING:
+            action = agent.act(observation)
+            _note(track, observation, info, agent)
+            time = float(observation["time"][0])
+            stop_reason = agent.navigator.status
+            if time >= next_report or stop_reason != RUNNING:
+                next_report = time + 1.0
+                coverages.append((time, meter.measure(agent.mapper.grid)))
+                if on_progress is not None:
+                    on_progress(_progress(time, coverages[-1][1], agent))
+            if stop_reason != RUNNING:
+                break
+            observation, _, _, truncated, info = environment.step(action)
+            if truncated:
+                stop_reason = TIME_LIMIT
+    except KeyboardInterrupt:
+        stop_reason = INTERRUPTED
+    wall_time = perf_counter() - started
+    time = float(observation["time"][0])
+    coverages.append((time, meter.measure(agent.mapper.grid)))
+    times, values = np.array(coverages).T
+    return Episode(
+        config=config,
+        plan=plan,
+        truth=truth,
+        grid=agent.mapper.grid,
+        track=track,
+        stop_reason=stop_reason,
+        sim_time=time,
+        wall_time=wall_time,
+        contacts=int(info["contacts"]),
+        coverage_times=times,
+        coverages=values,
+        map_updates=agent.mapper.updates,
+        scans_dropped=agent.mapper.scans_dropped,
+        map_update_seconds=np.array(agent.map_update_seconds),
+        navigator_seconds=np.array(agent.navigator_seconds),
+        dropped_frontiers=agent.navigator.dropped_frontiers,
+    )
+
+
+def _note(track: Track, observation: Any, info: dict[str, Any], agent: MappingAgent) -> None:
+    newest = observation["odometry"][-1]
+    track.stamps.append(float(observation["time"][0]))
+    track.pose_map.append(agent.mapper.pose_map.copy())
+    track.pose_world.append(np.array(info["pose_world"]))
+    track.pose_odom.append(newest[ODOMETRY_COLUMNS.index("x") : ODOMETRY_COLUMNS.index("yaw") + 1])
+
+
+def _progress(time: float, coverage: float, agent: MappingAgent) -> Progress:
+    return Progress(
+        time=time, coverage=coverage, grid=agent.mapper.grid, pose_map=agent.mapper.pose_map
+    )

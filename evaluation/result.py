@@ -1,0 +1,111 @@
+"""Turns an episode into the flat table of ``result.json``: counts, scores and timings."""
+
+import resource
+import sys
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from evaluation.clearance import min_clearance
+from evaluation.episode import Episode
+from mapping.compare import score_map
+from mapping.geometry import wrap_to_pi
+from nav.safety import SafetyConfig
+
+TIMING_KEYS = (
+    "wall_time_s",
+    "real_time_factor",
+    "map_update_ms_p50",
+    "map_update_ms_p99",
+    "peak_rss_mb",
+)
+"""Keys that differ between runs of the same seed; every other is the same to the last digit."""
+
+
+def result_of(episode: Episode, map_file_kb: float | None) -> dict[str, Any]:
+    """Every key of ``result.json``; a value that cannot exist is None, never 0.
+
+    Args:
+        episode: A finished episode.
+        map_file_kb: Size of the map's image file [kB], None when it was not written.
+    """
+    config, track = episode.config, episode.track
+    poses_world = np.array(track.pose_world)
+    return {
+        "world": config.world,
+        "mapper": config.mapper,
+        "navigator": config.navigator,
+        "seed": config.seed,
+        "stop_reason": episode.stop_reason,
+        "sim_time_s": round(episode.sim_time, 3),
+        "wall_time_s": round(episode.wall_time, 3),
+        "real_time_factor": round(episode.sim_time / episode.wall_time, 1),
+        "coverage": float(episode.coverages[-1]),
+        **_times_of_coverage(episode),
+        "path_length_m": _path_length(poses_world),
+        "contacts": episode.contacts,
+        "min_clearance_m": min_clearance(poses_world, episode.plan.solids(), SafetyConfig()),
+        **_map_scores(episode),
+        **_trajectory_scores(np.array(track.pose_map), poses_world),
+        "map_updates": episode.map_updates,
+        "scans_dropped": episode.scans_dropped,
+        "map_update_ms_p50": _percentile_ms(episode.map_update_seconds, 50),
+        "map_update_ms_p99": _percentile_ms(episode.map_update_seconds, 99),
+        "map_update_rate_hz": episode.map_updates / episode.sim_time,
+        "map_file_kb": map_file_kb,
+        "peak_rss_mb": _peak_rss_mb(),
+        "home_distance_m": float(np.hypot(*(poses_world[-1, :2] - poses_world[0, :2]))),
+        "dropped_frontiers": [asdict(frontier) for frontier in episode.dropped_frontiers],
+    }
+
+
+def _times_of_coverage(episode: Episode) -> dict[str, float | None]:
+    """When coverage first reached 90, 95 and 99 % [s], measured once a simulated second."""
+    times: dict[str, float | None] = {}
+    for share in (90, 95, 99):
+        reached = np.flatnonzero(episode.coverages >= share / 100.0)
+        times[f"t{share}_s"] = float(episode.coverage_times[reached[0]]) if len(reached) else None
+    return times
+
+
+def _map_scores(episode: Episode) -> dict[str, float | None]:
+    scores = asdict(score_map(episode.grid, episode.truth))
+    keys = (
+        "f1_5cm",
+        "f1_10cm",
+        "adnn_m",
+        "h95_m",
+        "free_iou",
+        "false_free",
+        "wall_thickness_ratio",
+    )
+    return {key: scores[key] for key in keys}
+
+
+def _trajectory_scores(
+    pose_map: NDArray[np.float64], pose_world: NDArray[np.float64]
+) -> dict[str, float | None]:
+    """Absolute trajectory error, unaligned: map and world share their frame."""
+    errors = np.hypot(*(pose_map - pose_world)[:, :2].T)
+    yaw_errors = np.abs(wrap_to_pi(pose_map[:, 2] - pose_world[:, 2]))
+    return {
+        "ate_rmse_m": float(np.sqrt(np.mean(errors**2))),
+        "ate_max_m": float(errors.max()),
+        "yaw_error_max_deg": float(np.degrees(yaw_errors.max())),
+    }
+
+
+def _path_length(poses: NDArray[np.float64]) -> float:
+    return float(np.hypot(*np.diff(poses[:, :2], axis=0).T).sum())
+
+
+def _percentile_ms(seconds: NDArray[np.float64], share: float) -> float | None:
+    return round(1e3 * float(np.percentile(seconds, share)), 4) if len(seconds) else None
+
+
+def _peak_rss_mb() -> float:
+    """The most memory this process ever held [MB]; Linux counts in kB, macOS in bytes."""
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return round(peak / (1e6 if sys.platform == "darwin" else 1e3), 1)

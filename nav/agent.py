@@ -1,0 +1,47 @@
+"""A mapper and a navigator make an agent: observation in, action out."""
+
+from time import perf_counter
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mapping.mapper import Mapper
+from mapping.messages import Imu, LaserScan, Observation, Odometry
+from nav.navigator import Navigator
+
+Action = NDArray[np.float32]
+
+
+class Agent(Protocol):
+    """Anything that can drive the robot: this package's agent, or a trained policy."""
+
+    def act(self, observation: Observation) -> Action:
+        """The action ``(2,)`` as (forward speed [m/s], turn rate [rad/s])."""
+
+
+class MappingAgent:
+    """Maps every observation, then asks the navigator where to go on that map."""
+
+    def __init__(self, mapper: Mapper, navigator: Navigator) -> None:
+        self.mapper = mapper
+        self.navigator = navigator
+        self.map_update_seconds: list[float] = []
+        """Wall time of each mapper update that took in a scan [s]."""
+        self.navigator_seconds: list[float] = []
+        """Wall time of each navigator command [s]."""
+
+    def act(self, observation: Observation) -> Action:
+        """Update the map with all messages of the last control period, then command."""
+        scan = LaserScan.from_observation(observation)
+        before = self.mapper.updates
+        started = perf_counter()
+        self.mapper.update(
+            scan, Odometry.from_observation(observation), Imu.from_observation(observation)
+        )
+        mapped = perf_counter()
+        if self.mapper.updates > before:
+            self.map_update_seconds.append(mapped - started)
+        twist = self.navigator.command(self.mapper.grid, self.mapper.pose_map, scan)
+        self.navigator_seconds.append(perf_counter() - mapped)
+        return np.array([twist.linear_x, twist.angular_z], dtype=np.float32)

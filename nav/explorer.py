@@ -1,0 +1,278 @@
+"""Explores until no frontier is worth the way, then drives home: the ``frontier`` navigator.
+
+Each period: follow the path, under the safety layer's eye. Now and then, or when something calls
+for it, look at the map again and decide anew. A robot that makes no headway recovers; a frontier
+that cannot be had is given up with a reason, and tried once more at the end.
+"""
+
+from dataclasses import dataclass
+from enum import Enum, auto
+
+import numpy as np
+
+from mapping.geometry import Pose
+from mapping.grid import OccupancyGrid
+from mapping.messages import LaserScan, Twist
+from nav.costmap import Costmap, CostmapConfig
+from nav.decision import DecisionConfig, choose
+from nav.frontier import (
+    Frontier,
+    FrontierConfig,
+    Viewpoint,
+    find_frontiers,
+    find_viewpoints,
+    gain_at,
+)
+from nav.given_up import GivenUp
+from nav.headway import Headway
+from nav.navigator import COMPLETE, RUNNING, STUCK, UNREACHABLE_START, DroppedFrontier, Plan
+from nav.path_follower import FollowerConfig, PathFollower
+from nav.planner import CostField
+from nav.recovery import Recovery, RecoveryConfig
+from nav.safety import Safety, SafetyConfig
+from nav.scan_points import ScanPoints
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExplorerConfig:
+    """The explorer's parts and its own patience."""
+
+    costmap: CostmapConfig = CostmapConfig()
+    frontier: FrontierConfig = FrontierConfig()
+    decision: DecisionConfig = DecisionConfig()
+    follower: FollowerConfig = FollowerConfig()
+    safety: SafetyConfig = SafetyConfig()
+    recovery: RecoveryConfig = RecoveryConfig()
+    decide_every: float = 2.0
+    """Longest time between two decisions while driving [s]."""
+    glance_every: float = 0.8
+    """How often the goal's worth is looked at while driving [s]."""
+    worth_left: float = 0.35
+    """Share of the promised gain below which a goal is left for a better one."""
+    changed_reach: float = 4.2
+    """How far from the robot the map may have changed since the last look [m]."""
+    near_rings: tuple[float, ...] = (5.0, 15.0, float("inf"))
+    """Costs up to which viewpoints are looked for, in turn, until one is found [m]."""
+    arrived: float = 0.12
+    """Distance to a viewpoint at which it is reached [m]."""
+    home_tolerance: float = 0.08
+    """Distance to the start at which the robot is home [m]."""
+    obstacle_reach: float = 1.2
+    """Returns up to this far are held against the path [m]."""
+    path_clearance: float = 0.10
+    """A return this close to the path ahead blocks it [m]."""
+    recoveries_per_goal: int = 2
+    """Recoveries after which a frontier is given up."""
+    recoveries_in_a_row: int = 8
+    """Recoveries without headway in between after which the robot is stuck."""
+
+
+class Task(Enum):
+    """What the explorer is at."""
+
+    EXPLORE = auto()
+    GO_HOME = auto()
+
+
+class FrontierExplorer:
+    """Frontier exploration on the mapper's grid."""
+
+    def __init__(self, config: ExplorerConfig | None = None) -> None:
+        self.config = config or ExplorerConfig()
+        self.status = RUNNING
+        self.dropped_frontiers: tuple[DroppedFrontier, ...] = ()
+        self._period = self.config.follower.limits.period
+        self._costmap = Costmap(self.config.costmap)
+        self._follower = PathFollower(self.config.follower)
+        self._safety = Safety(self.config.safety)
+        self._recovery = Recovery(self.config.recovery)
+        self._scan_points = ScanPoints()
+        self._headway = Headway()
+        self._given_up = GivenUp()
+        self._task = Task.EXPLORE
+        self._home: Pose | None = None
+        self._target: Viewpoint | None = None
+        self._goal: np.ndarray | None = None
+        self._frontiers: list[Frontier] = []
+        self._recoveries = 0
+        self._decided_at = self._glanced_at = -np.inf
+
+    @property
+    def plan(self) -> Plan:
+        """The way ahead, the goal and the frontiers of the last decision."""
+        middles = [frontier.middle for frontier in self._frontiers]
+        return Plan(
+            path=self._follower.path_ahead if self._goal is not None else np.zeros((0, 2)),
+            goal=self._goal,
+            frontiers=np.array(middles).reshape(-1, 2),
+        )
+
+    def command(self, grid: OccupancyGrid, pose_map: Pose, scan: LaserScan | None) -> Twist:
+        """The velocity for the next control period; zero once the status is final."""
+        if self._home is None:
+            self._home = pose_map.copy()
+        new_scan = self._scan_points.update(
+            scan, pose_map, self._period, self.config.obstacle_reach
+        )
+        if self.status != RUNNING or scan is None:
+            return self._move(Twist(), pose_map, grid)
+        if self._recovery.active:
+            twist = self._recovery.command(pose_map, self._scan_points.points, self._period)
+            if twist is not None:
+                return self._move(twist, pose_map, grid)
+            self._forget_goal()
+        if self._must_decide(grid, pose_map, new_scan):
+            self._decide(grid, pose_map)
+        if self.status != RUNNING or self._goal is None:
+            return self._move(Twist(), pose_map, grid)
+        if self._headway.is_lost(pose_map, self._period):
+            self._start_recovery(pose_map)
+            return self._move(Twist(), pose_map, grid)
+        clearance = self._costmap.clearance_at(pose_map[:2])
+        return self._move(self._follower.command(pose_map, clearance), pose_map, grid)
+
+    def _move(self, wanted: Twist, pose: Pose, grid: OccupancyGrid) -> Twist:
+        """The twist that is safe, remembered as the one to accelerate from."""
+        twist = self._safety.limit(wanted, pose, self._scan_points.points, grid)
+        self._follower.last = twist
+        return twist
+
+    def _must_decide(self, grid: OccupancyGrid, pose: Pose, new_scan: bool) -> bool:
+        """Whether the way on is in question."""
+        if self._goal is None or self._has_arrived(grid, pose):
+            return True
+        if self.status != RUNNING:
+            return False
+        return self._is_due(grid, pose) or (new_scan and self._path_is_blocked())
+
+    def _has_arrived(self, grid: OccupancyGrid, pose: Pose) -> bool:
+        """Whether the goal is reached; says what came of it."""
+        if self._goal is None:
+            return False
+        gap = float(np.hypot(*(self._goal - pose[:2])))
+        if self._task is Task.GO_HOME:
+            if gap < self.config.home_tolerance:
+                self._finish(COMPLETE)
+            return False
+        if gap >= self.config.arrived:
+            return False
+        self._judge_arrival(grid, pose)
+        return True
+
+    def _judge_arrival(self, grid: OccupancyGrid, pose: Pose) -> None:
+        """Give the frontier up if its viewpoint shows nothing of what it promised."""
+        target = self._target
+        if target is None:
+            return
+        self._look(grid, pose)
+        if gain_at(self._costmap, target.place, self.config.frontier) > 0.8 * target.gain:
+            self._given_up.give_up(target.frontier, "its viewpoint showed nothing new")
+        self._recoveries = 0
+
+    def _is_due(self, grid: OccupancyGrid, pose: Pose) -> bool:
+        """Whether it is time to decide anew: long ago, or the goal has lost its worth."""
+        now = self._scan_points.time
+        if self._task is Task.GO_HOME:
+            return now - self._decided_at > 2.0 * self.config.decide_every
+        if now - self._decided_at > self.config.decide_every:
+            return True
+        if now - self._glanced_at < self.config.glance_every or self._target is None:
+            return False
+        self._glanced_at = now
+        self._look(grid, pose)
+        left = gain_at(self._costmap, self._target.place, self.config.frontier)
+        return left < self.config.worth_left * self._target.gain
+
+    def _look(self, grid: OccupancyGrid, pose: Pose) -> None:
+        self._costmap.refresh(grid, pose[:2], self.config.changed_reach)
+
+    def _path_is_blocked(self) -> bool:
+        """Whether the newest returns lie on the next stretch of the path."""
+        points, path = self._scan_points.points, self._follower.path_ahead[:20]
+        if len(points) == 0 or len(path) == 0:
+            return False
+        gaps = np.hypot(
+            points[:, None, 0] - path[None, :, 0], points[:, None, 1] - path[None, :, 1]
+        )
+        return bool(gaps.min() < self.config.path_clearance)
+
+    def _decide(self, grid: OccupancyGrid, pose: Pose) -> None:
+        """Look at the map and set out for the best viewpoint, or home when none is left."""
+        self._decided_at = self._glanced_at = self._scan_points.time
+        self._look(grid, pose)
+        if self._task is Task.EXPLORE:
+            target, field = self._best_viewpoint(pose)
+            if target is None and self._given_up.second_chance():
+                target, field = self._best_viewpoint(pose)
+            if target is not None:
+                self._set_out(field, target.place, target)
+                return
+            if self._is_shut_in(field):
+                self._finish(UNREACHABLE_START)
+                return
+            self._task = Task.GO_HOME
+        self._go_home(pose)
+
+    def _best_viewpoint(self, pose: Pose) -> tuple[Viewpoint | None, CostField]:
+        """The best viewpoint among the nearest ring that has any, and the cost field it is from."""
+        config = self.config
+        self._frontiers = find_frontiers(self._costmap, config.frontier)
+        open_ones = [item for item in self._frontiers if not self._given_up.holds(item)]
+        for ring in config.near_rings:
+            field = CostField.around(self._costmap, pose[:2], max_cost=ring)
+            viewpoints = find_viewpoints(field, open_ones, config.frontier)
+            best = choose(viewpoints, pose, self._target, config.decision)
+            if best is not None:
+                return best, field
+        self._note_unreachable(open_ones)
+        return None, field
+
+    def _note_unreachable(self, frontiers: list[Frontier]) -> None:
+        """Record every frontier that would be worth seeing but that no known place sees."""
+        for frontier in frontiers:
+            gain = gain_at(self._costmap, frontier.middle, self.config.frontier)
+            if gain >= self.config.frontier.min_gain:
+                self._given_up.give_up(frontier, "no known way to a place that sees it")
+
+    def _is_shut_in(self, field: CostField) -> bool:
+        """Whether the robot cannot leave where it stands although there is more to see."""
+        reachable = np.isfinite(field.cost_to_come).sum() * self._costmap.resolution**2
+        body = np.pi * self.config.costmap.lethal_clearance**2
+        return bool(reachable < body and self._frontiers)
+
+    def _go_home(self, pose: Pose) -> None:
+        assert self._home is not None
+        field = CostField.around(self._costmap, pose[:2])
+        if field.reaches(self._home[:2]):
+            self._set_out(field, self._home[:2], None)
+        elif float(np.hypot(*(self._home - pose)[:2])) < 2.0 * self.config.home_tolerance:
+            self._finish(COMPLETE)
+        else:
+            self._start_recovery(pose)
+
+    def _set_out(self, field: CostField, goal: np.ndarray, target: Viewpoint | None) -> None:
+        if self._goal is None or float(np.hypot(*(self._goal - goal))) > self.config.arrived:
+            self._headway.restart()
+        self._goal, self._target = goal.copy(), target
+        self._follower.set_path(field.path_to(goal))
+
+    def _start_recovery(self, pose: Pose) -> None:
+        """Recover; give the frontier up after too many, the robot after far too many."""
+        self._recoveries += 1
+        self._headway.restart()
+        if self._recoveries > self.config.recoveries_in_a_row:
+            self._finish(STUCK)
+            return
+        if self._target is not None and self._recoveries > self.config.recoveries_per_goal:
+            self._given_up.give_up(self._target.frontier, "no headway on the way there")
+            self._target = None
+        self._recovery.begin(pose)
+
+    def _forget_goal(self) -> None:
+        self._goal, self._target = None, None
+        self._headway.restart()
+
+    def _finish(self, status: str) -> None:
+        self.status = status
+        self.dropped_frontiers = self._given_up.left_over(self._frontiers)
+        self._goal = None

@@ -1,0 +1,67 @@
+"""Keeps the frontiers that were given up, and why, and gives each a second chance at the end."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from nav.frontier import Frontier
+from nav.navigator import DroppedFrontier
+
+SAME_PLACE = 0.35
+"""A frontier this close to one that was given up counts as that one [m]."""
+
+
+@dataclass(slots=True)
+class _Record:
+    frontier: Frontier
+    reason: str
+    times: int = 1
+
+
+class GivenUp:
+    """Frontiers given up so far, by place."""
+
+    def __init__(self) -> None:
+        self._records: list[_Record] = []
+        self._chances = 1
+
+    def give_up(self, frontier: Frontier, reason: str) -> None:
+        """Leave a frontier alone, for now or, after its second chance, for good."""
+        record = self._find(frontier)
+        if record is None:
+            self._records.append(_Record(frontier, reason))
+        else:
+            record.times, record.reason = record.times + 1, reason
+
+    def holds(self, frontier: Frontier) -> bool:
+        """Whether a frontier is to be left alone now."""
+        record = self._find(frontier)
+        return record is not None and record.times >= self._chances
+
+    def second_chance(self) -> bool:
+        """Let every frontier be tried once more; False when that was granted or none waits."""
+        if self._chances > 1 or not self._records:
+            return False
+        self._chances = 2
+        return True
+
+    def left_over(self, frontiers: Sequence[Frontier]) -> tuple[DroppedFrontier, ...]:
+        """Those of ``frontiers``, the ones still there, that were given up, with the reason."""
+        found = [(frontier, self._find(frontier)) for frontier in frontiers]
+        return tuple(
+            DroppedFrontier(
+                x=float(frontier.middle[0]),
+                y=float(frontier.middle[1]),
+                size_m=float(frontier.size),
+                reason=record.reason,
+            )
+            for frontier, record in found
+            if record is not None
+        )
+
+    def _find(self, frontier: Frontier) -> _Record | None:
+        for record in self._records:
+            if np.hypot(*(record.frontier.middle - frontier.middle)) < SAME_PLACE:
+                return record
+        return None

@@ -1,0 +1,128 @@
+"""Turns a path and a pose into a twist: pure pursuit, slower in curves and near things.
+
+Coulter 1992 for the arc to a point ahead, Macenski et al. 2023 (regulated pure pursuit) for
+slowing by curvature, by clearance and on approach.
+"""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mapping.geometry import Pose, wrap_to_pi
+from mapping.messages import Twist
+from nav.motion_limits import MotionLimits
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FollowerConfig:
+    """How far ahead to look and when to slow down or turn on the spot."""
+
+    limits: MotionLimits = MotionLimits()
+    lookahead: float = 0.35
+    """Distance along the path to the point steered for, in the open [m]."""
+    tight_lookahead: float = 0.18
+    """The same where it is tight: a shorter one cuts corners less [m]."""
+    open_clearance: float = 0.30
+    """Clearance from which it counts as open [m]."""
+    tight_clearance: float = 0.12
+    """Clearance at which it counts as tight [m]."""
+    tight_speed: float = 0.10
+    """Speed where it is tight [m/s]."""
+    turn_on_spot_above: float = 1.0
+    """Heading error from which the robot stops and turns [rad]."""
+    drive_again_below: float = 0.35
+    """Heading error at which it drives again [rad]."""
+    turn_gain: float = 2.5
+    """Turn rate per heading error when turning on the spot [1/s]."""
+    approach_gain: float = 1.2
+    """Speed per distance left to the goal [1/s]."""
+    creep_speed: float = 0.03
+    """Slowest useful speed [m/s]."""
+
+
+class PathFollower:
+    """Follows one path at a time; remembers how far along it is and how it moves."""
+
+    def __init__(self, config: FollowerConfig | None = None) -> None:
+        self.config = config or FollowerConfig()
+        self.last = Twist()
+        self._path: NDArray[np.float64] = np.zeros((0, 2))
+        self._along: NDArray[np.float64] = np.zeros(0)
+        self._progress = 0
+        self._turning = False
+
+    @property
+    def path_ahead(self) -> NDArray[np.float64]:
+        """The part of the path still to drive ``(n, 2)``, a point every 5 cm or so."""
+        return self._path[self._progress :]
+
+    def set_path(self, path: NDArray[np.float64], spacing: float = 0.05) -> None:
+        """Follow a new path ``(n, 2)`` [m] from its start."""
+        self._path = _densify(path, spacing)
+        steps = np.hypot(*np.diff(self._path, axis=0).T)
+        self._along = np.concatenate(([0.0], np.cumsum(steps)))
+        self._progress = 0
+
+    def distance_left(self, pose: Pose) -> float:
+        """Way left to the end of the path [m]."""
+        self._advance(pose)
+        gap = float(np.hypot(*(self._path[self._progress] - pose[:2])))
+        return gap + float(self._along[-1] - self._along[self._progress])
+
+    def command(self, pose: Pose, clearance: float) -> Twist:
+        """The twist for the next period, within the limits; ``clearance`` is that of the robot."""
+        left = self.distance_left(pose)
+        config = self.config
+        openness = (clearance - config.tight_clearance) / (
+            config.open_clearance - config.tight_clearance
+        )
+        openness = float(np.clip(openness, 0.0, 1.0))
+        ahead = config.tight_lookahead + openness * (config.lookahead - config.tight_lookahead)
+        target = self._point_ahead(ahead)
+        offset = target - pose[:2]
+        error = float(wrap_to_pi(np.arctan2(offset[1], offset[0]) - pose[2]))
+        threshold = config.drive_again_below if self._turning else config.turn_on_spot_above
+        self._turning = abs(error) > threshold
+        wanted = (
+            Twist(angular_z=config.turn_gain * error)
+            if self._turning
+            else self._arc(error, float(np.hypot(*offset)), left, openness)
+        )
+        return self.config.limits.approach(wanted, self.last)
+
+    def _arc(self, error: float, distance: float, left: float, openness: float) -> Twist:
+        config = self.config
+        limits = config.limits
+        curvature = 2.0 * np.sin(error) / max(distance, 1e-3)
+        speed = config.tight_speed + openness * (limits.max_linear - config.tight_speed)
+        speed = min(speed, config.creep_speed + config.approach_gain * left)
+        speed = min(speed, limits.max_angular / max(abs(curvature), 1e-6))
+        speed *= max(np.cos(error), 0.0)
+        return Twist(linear_x=float(speed), angular_z=float(speed * curvature))
+
+    def _advance(self, pose: Pose) -> None:
+        """Move the progress to the nearest path point not far ahead; never back."""
+        window = self._path[self._progress : self._progress + 20]
+        gaps = np.hypot(window[:, 0] - pose[0], window[:, 1] - pose[1])
+        self._progress += int(np.argmin(gaps))
+
+    def _point_ahead(self, distance: float) -> NDArray[np.float64]:
+        along = min(self._along[self._progress] + distance, self._along[-1])
+        return np.array(
+            [
+                np.interp(along, self._along, self._path[:, 0]),
+                np.interp(along, self._along, self._path[:, 1]),
+            ]
+        )
+
+
+def _densify(path: NDArray[np.float64], spacing: float) -> NDArray[np.float64]:
+    """The same polyline with a point at least every ``spacing`` metres."""
+    pieces = [path[:1]]
+    for a, b in pairwise(path):
+        count = max(1, int(np.ceil(np.hypot(*(b - a)) / spacing)))
+        shares = np.arange(1, count + 1)[:, None] / count
+        pieces.append(a + shares * (b - a))
+    return np.concatenate(pieces)

@@ -1,0 +1,113 @@
+"""The planner's inner loops: Dijkstra's search, walking back along it, pulling a path taut."""
+
+import heapq
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from mapping.grid import OCCUPIED
+
+FORBIDDEN_COST = 1.0e4
+"""Stands for infinity where costs are added up and subtracted again."""
+TAUT_CELLS = 80
+"""Longest straight piece that is looked for, 4 m at 5 cm: longer ones gain next to nothing."""
+
+
+@njit(cache=True)
+def spread_cost(
+    cost: NDArray[np.float32],
+    states: NDArray[np.int8],
+    start_row: int,
+    start_column: int,
+    resolution: float,
+    max_cost: float,
+    escape_radius: float,
+    escape_cost: float,
+) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
+    """Dijkstra over eight neighbours; a step costs its length times the mean cost of its ends."""
+    rows, columns = cost.shape
+    cost_to_come = np.full((rows, columns), np.inf, dtype=np.float32)
+    parents = np.full((rows, columns), -1, dtype=np.int32)
+    if not (0 <= start_row < rows and 0 <= start_column < columns):
+        return cost_to_come, parents
+    escape_cells = escape_radius / resolution
+    cost_to_come[start_row, start_column] = 0.0
+    heap = [(np.float32(0.0), np.int32(start_row * columns + start_column))]
+    while len(heap) > 0:
+        so_far, index = heapq.heappop(heap)
+        row, column = index // columns, index % columns
+        if so_far > cost_to_come[row, column]:
+            continue
+        if so_far > max_cost:
+            break
+        here = min(cost[row, column], np.float32(escape_cost))
+        for i in range(max(row - 1, 0), min(row + 2, rows)):
+            for j in range(max(column - 1, 0), min(column + 2, columns)):
+                there = cost[i, j]
+                if not np.isfinite(there):
+                    away = np.hypot(i - start_row, j - start_column)
+                    if states[i, j] == OCCUPIED or away > escape_cells:
+                        continue
+                    there = np.float32(escape_cost)
+                length = resolution * np.sqrt(float(abs(i - row) + abs(j - column)))
+                total = np.float32(so_far + length * 0.5 * (here + there))
+                if total < cost_to_come[i, j]:
+                    cost_to_come[i, j] = total
+                    parents[i, j] = index
+                    heapq.heappush(heap, (total, np.int32(i * columns + j)))
+    return cost_to_come, parents
+
+
+@njit(cache=True)
+def descend(parents: NDArray[np.int32], row: int, column: int) -> NDArray[np.int64]:
+    """The cells ``(n, 2)`` from the start of a search to one cell, both included."""
+    columns = parents.shape[1]
+    count = 1
+    index = row * columns + column
+    while parents[index // columns, index % columns] >= 0:
+        index = parents[index // columns, index % columns]
+        count += 1
+    cells = np.empty((count, 2), dtype=np.int64)
+    index = row * columns + column
+    for k in range(count - 1, -1, -1):
+        cells[k, 0], cells[k, 1] = index // columns, index % columns
+        index = parents[index // columns, index % columns]
+    return cells
+
+
+@njit(cache=True)
+def shorten(cells: NDArray[np.int64], cost: NDArray[np.float32]) -> NDArray[np.int64]:
+    """Drop corners of a path as long as the straight line is not dearer than the way round it."""
+    count = len(cells)
+    keep = np.empty(count, dtype=np.int64)
+    keep[0] = 0
+    kept = 1
+    anchor = 0
+    along = np.zeros(count)
+    for k in range(1, count):
+        along[k] = along[k - 1] + line_cost(cells[k - 1], cells[k], cost)
+    while anchor < count - 1:
+        best = anchor + 1
+        for k in range(anchor + 2, min(anchor + TAUT_CELLS, count)):
+            way_round = along[k] - along[anchor]
+            if line_cost(cells[anchor], cells[k], cost) <= way_round * 1.001:
+                best = k
+        keep[kept] = best
+        kept += 1
+        anchor = best
+    return cells[keep[:kept]]
+
+
+@njit(cache=True)
+def line_cost(a: NDArray[np.int64], b: NDArray[np.int64], cost: NDArray[np.float32]) -> float:
+    """Cost of the straight line between two cells' centres, in cells; sampled every half cell."""
+    dy, dx = float(b[0] - a[0]), float(b[1] - a[1])
+    length = np.hypot(dy, dx)
+    steps = max(1, int(np.ceil(2.0 * length)))
+    total = 0.0
+    for k in range(steps):
+        t = (k + 0.5) / steps
+        row, column = int(np.floor(a[0] + t * dy + 0.5)), int(np.floor(a[1] + t * dx + 0.5))
+        total += min(float(cost[row, column]), FORBIDDEN_COST)
+    return float(total * length / steps)

@@ -1,0 +1,86 @@
+"""Gets a robot that is blocked moving again: back off a little, then turn to the open side."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mapping.geometry import Pose, wrap_to_pi
+from mapping.messages import Twist
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RecoveryConfig:
+    """How a recovery moves."""
+
+    back_off_speed: float = 0.06
+    """[m/s]."""
+    back_off_distance: float = 0.10
+    """[m]."""
+    turn_speed: float = 0.8
+    """[rad/s]."""
+    facing: float = 0.3
+    """Heading error at which the open side counts as faced [rad]."""
+    time_limit: float = 6.0
+    """A recovery ends after this long whatever came of it [s]."""
+    view: float = 1.0
+    """Obstacles farther than this do not count when looking for the open side [m]."""
+
+
+class Recovery:
+    """One recovery: begun, commanded each period, over when ``command`` returns None."""
+
+    def __init__(self, config: RecoveryConfig | None = None) -> None:
+        self.config = config or RecoveryConfig()
+        self._start: Pose | None = None
+        self._elapsed = 0.0
+        self._heading: float | None = None
+
+    @property
+    def active(self) -> bool:
+        """Whether a recovery is going on."""
+        return self._start is not None
+
+    def begin(self, pose: Pose) -> None:
+        """Start backing off from here."""
+        self._start, self._elapsed, self._heading = pose.copy(), 0.0, None
+
+    def command(self, pose: Pose, points: NDArray[np.float64], period: float) -> Twist | None:
+        """The twist for the next period, or None when the recovery is over.
+
+        Args:
+            pose: Pose of base_footprint in the map frame ``(3,)``.
+            points: Obstacle points in the map frame ``(n, 2)``.
+            period: Control period [s].
+        """
+        config = self.config
+        if self._start is None:
+            return None
+        self._elapsed += period
+        if self._elapsed > config.time_limit:
+            self._start = None
+            return None
+        backed = float(np.hypot(*(pose[:2] - self._start[:2])))
+        slow = self._elapsed > 2.0 * config.back_off_distance / config.back_off_speed
+        if self._heading is None and backed < config.back_off_distance and not slow:
+            return Twist(linear_x=-config.back_off_speed)
+        if self._heading is None:
+            self._heading = open_heading(pose, points, config.view)
+        error = float(wrap_to_pi(self._heading - pose[2]))
+        if abs(error) < config.facing:
+            self._start = None
+            return None
+        return Twist(angular_z=float(np.copysign(config.turn_speed, error)))
+
+
+def open_heading(pose: Pose, points: NDArray[np.float64], view: float, sectors: int = 24) -> float:
+    """The direction [rad, map frame] of the middle of the widest run of open sectors."""
+    offsets = points - pose[:2]
+    distances = np.hypot(offsets[:, 0], offsets[:, 1])
+    near = distances < view
+    bearing = np.mod(np.arctan2(offsets[near, 1], offsets[near, 0]), 2.0 * np.pi)
+    sector = np.minimum((bearing / (2.0 * np.pi) * sectors).astype(int), sectors - 1)
+    space = np.full(sectors, view)
+    np.minimum.at(space, sector, distances[near])
+    smooth = sum(np.roll(space, shift) for shift in (-2, -1, 0, 1, 2))
+    return float(wrap_to_pi((int(np.argmax(smooth)) + 0.5) * 2.0 * np.pi / sectors))

@@ -1,0 +1,57 @@
+"""The ``burger`` command: finds the verb, runs it, turns bad input into one line and status 2."""
+
+import sys
+from importlib import import_module
+
+VERBS = {
+    "explore": "one autonomous episode: drive, map, score, write a run folder",
+    "compare": "score a map file against a floor plan or another map",
+    "world": "list, show and convert floor plans",
+    "bench": "how fast each stage and the whole loop run on this machine",
+}
+"""Verb -> one line about it; each verb is the module of that name in this folder."""
+
+BAD_INPUT = 2
+
+
+def main() -> None:
+    """Run the command line of this process and exit with its status."""
+    sys.exit(run(sys.argv[1:]))
+
+
+def run(arguments: list[str]) -> int:
+    """Run one command line; returns the exit status.
+
+    0 = done and within criteria, 1 = ran and failed its criteria, 2 = bad input, 130 = Ctrl-C
+    before there was anything to save.
+    """
+    if not arguments or arguments[0] in ("-h", "--help"):
+        print(_help())
+        return 0 if arguments else BAD_INPUT
+    verb, *rest = arguments
+    if verb not in VERBS:
+        print(f"burger: {verb!r} is no verb; must be one of {', '.join(VERBS)}", file=sys.stderr)
+        return BAD_INPUT
+    from mapping.errors import TestbedError
+
+    try:
+        return int(import_module(f"scripts.{verb}").run(rest))
+    except TestbedError as error:
+        print(f"burger {verb}: {' '.join(str(error).split())}", file=sys.stderr)
+        return BAD_INPUT
+    except KeyboardInterrupt:
+        print(f"burger {verb}: interrupted", file=sys.stderr)
+        return 130
+
+
+def _help() -> str:
+    verbs = "\n".join(f"  {verb:<9} {about}" for verb, about in VERBS.items())
+    return (
+        "usage: burger VERB [options]\n\n"
+        "A simulated TurtleBot3 Burger explores a floor plan, maps it and is scored.\n\n"
+        f"{verbs}\n\nburger VERB --help tells the options of a verb."
+    )
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,78 @@
+"""``burger explore``: one autonomous episode into a run folder."""
+
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+import tyro
+from tqdm import tqdm
+
+from evaluation.episode import EpisodeConfig, Progress, run_episode
+from evaluation.run_folder import prepare, write_run
+
+from scripts.arguments import is_terminal, parse
+from scripts.first_run import compile_if_needed
+
+
+@dataclass(frozen=True, kw_only=True)
+class Explore:
+    """Explore a world autonomously, map it, score the map, write a run folder."""
+
+    episode: Annotated[EpisodeConfig, tyro.conf.OmitArgPrefixes]
+    out: Path | None = None
+    """Folder to write; default runs/WORLD-MAPPER-seedN."""
+
+
+def run(arguments: list[str]) -> int:
+    """Run the verb; 0 when the robot finished, 1 when it did not."""
+    options = parse(Explore, "explore", arguments)
+    config = options.episode
+    out = options.out or Path("runs") / _folder_name(config)
+    prepare(out)
+    compile_if_needed()
+    result = write_run(_watch(config), out)
+    print(summary(result))
+    print(f"map, picture, trajectories and result.json are in {out}/")
+    return 0 if result["stop_reason"] == "complete" else 1
+
+
+def summary(result: dict[str, Any]) -> str:
+    """What came of a run, in a few lines."""
+    return "\n".join(
+        (
+            f"{result['world']}: {result['stop_reason']} after {result['sim_time_s']:.0f} s "
+            f"simulated, {result['wall_time_s']:.1f} s real "
+            f"({result['real_time_factor']:.0f}x real time)",
+            f"  coverage {_shown(result['coverage'])}   f1_5cm {_shown(result['f1_5cm'])}   "
+            f"f1_10cm {_shown(result['f1_10cm'])}   free_iou {_shown(result['free_iou'])}",
+            f"  path {result['path_length_m']:.1f} m   contacts {result['contacts']}   "
+            f"home within {result['home_distance_m']:.2f} m   "
+            f"position error {result['ate_rmse_m']:.3f} m rms",
+        )
+    )
+
+
+def _shown(value: float | None) -> str:
+    return "-" if value is None else f"{value:.3f}"
+
+
+def _folder_name(config: EpisodeConfig) -> str:
+    return f"{Path(config.world).stem}-{config.mapper}-seed{config.seed}"
+
+
+def _watch(config: EpisodeConfig) -> Any:
+    """Run the episode behind a progress line, shown on a terminal only."""
+    layout = "{desc} {n:.0f} s simulated [{elapsed} real{postfix}]"
+    with tqdm(
+        desc=f"exploring {Path(config.world).stem}",
+        bar_format=layout,
+        disable=not is_terminal(),
+        file=sys.stderr,
+    ) as line:
+
+        def show(progress: Progress) -> None:
+            line.set_postfix_str(f"coverage {progress.coverage:.1%}", refresh=False)
+            line.update(progress.time - line.n)
+
+        return run_episode(config, show)

@@ -1,0 +1,83 @@
+"""The follower on a robot that does exactly what it is told."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from mapping.geometry import wrap_to_pi
+from mapping.messages import Twist
+from nav.motion_limits import MotionLimits
+from nav.path_follower import PathFollower
+
+
+def drive(follower: PathFollower, pose: np.ndarray, seconds: float, clearance: float) -> np.ndarray:
+    """Poses ``(n, 3)`` of a robot that follows the commands to the letter."""
+    poses = [pose]
+    for _ in range(round(seconds / 0.1)):
+        twist = follower.command(pose, clearance)
+        follower.last = twist
+        yaw = pose[2] + 0.05 * twist.angular_z
+        pose = pose + [
+            0.1 * twist.linear_x * np.cos(yaw),
+            0.1 * twist.linear_x * np.sin(yaw),
+            0.1 * twist.angular_z,
+        ]
+        pose[2] = wrap_to_pi(pose[2])
+        poses.append(pose)
+    return np.array(poses)
+
+
+def distance_to_path(poses: np.ndarray, path: np.ndarray) -> np.ndarray:
+    dense = np.concatenate(
+        [
+            a + np.linspace(0, 1, 200)[:, None] * (b - a)
+            for a, b in zip(path, path[1:], strict=False)
+        ]
+    )
+    return np.hypot(*(poses[:, None, :2] - dense).transpose(2, 0, 1)).min(axis=1)
+
+
+@pytest.mark.parametrize(("clearance", "bound"), [(0.5, 0.12), (0.13, 0.05)])
+def test_a_right_angle_is_followed_closer_where_it_is_tight(clearance: float, bound: float) -> None:
+    path = np.array([[0.0, 0.0], [1.5, 0.0], [1.5, 1.5]])
+    follower = PathFollower()
+    follower.set_path(path)
+    poses = drive(follower, np.zeros(3), 60.0, clearance)
+    assert distance_to_path(poses, path).max() < bound, "pure pursuit cuts by about lookahead / 3"
+    assert np.hypot(*(poses[-1, :2] - path[-1])) < 0.05
+
+
+def test_a_goal_behind_is_turned_to_on_the_spot() -> None:
+    follower = PathFollower()
+    follower.set_path(np.array([[0.0, 0.0], [-1.0, 0.0]]))
+    poses = drive(follower, np.zeros(3), 1.0, 0.5)
+    assert np.hypot(*poses[-1, :2]) < 0.01
+    assert abs(poses[-1, 2]) > 0.5
+
+
+@given(
+    linear=st.floats(-1.0, 1.0),
+    angular=st.floats(-5.0, 5.0),
+    last_linear=st.floats(-0.21, 0.21),
+    last_angular=st.floats(-1.6, 1.6),
+)
+@settings(max_examples=100, deadline=None)
+def test_speeds_and_accelerations_are_kept_but_braking_is_free(
+    linear: float, angular: float, last_linear: float, last_angular: float
+) -> None:
+    limits = MotionLimits()
+    last = Twist(linear_x=last_linear, angular_z=last_angular)
+    next_one = limits.approach(Twist(linear_x=linear, angular_z=angular), last)
+    assert abs(next_one.linear_x) <= limits.max_linear
+    assert abs(next_one.angular_z) <= limits.max_angular
+    gained = abs(next_one.linear_x) - abs(last_linear) * (next_one.linear_x * last_linear >= 0.0)
+    assert gained <= limits.linear_acceleration * limits.period + 1e-9
+    assert limits.approach(Twist(), last) == Twist()
+
+
+def test_distance_left_shrinks_to_nothing_along_the_way() -> None:
+    follower = PathFollower()
+    follower.set_path(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]]))
+    assert follower.distance_left(np.zeros(3)) == pytest.approx(2.0)
+    assert follower.distance_left(np.array([0.75, 0.0, 0.0])) == pytest.approx(1.25)
