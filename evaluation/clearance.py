@@ -71,7 +71,8 @@ def _to_outline(points: NDArray[np.float64], outline: SafetyConfig) -> NDArray[n
     x, y = points[..., 0], points[..., 1]
     beyond_x = np.maximum(np.maximum(x - outline.front, -outline.back - x), 0.0)
     beyond_y = np.maximum(np.abs(y) - outline.side, 0.0)
-    return np.hypot(beyond_x, beyond_y)
+    distances: NDArray[np.float64] = np.hypot(beyond_x, beyond_y)
+    return distances
 
 
 def _corners(poses: NDArray[np.float64], outline: SafetyConfig) -> NDArray[np.float64]:

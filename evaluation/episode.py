@@ -14,7 +14,7 @@ from envs.truth import truth_of_plan
 from envs.worlds import load_world
 from mapping.compare import CoverageMeter
 from mapping.errors import TestbedError
-from mapping.grid import GridConfig, OccupancyGrid
+from mapping.grid import OccupancyGrid
 from mapping.mappers import make_mapper
 from mapping.messages import ODOMETRY_COLUMNS
 from mapping.truth import TruthMap

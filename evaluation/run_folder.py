@@ -3,6 +3,8 @@
 import json
 import platform
 import subprocess
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
@@ -21,21 +23,21 @@ from mapping.plot import save_map_picture
 RECORDED_VERSIONS = ("burger-testbed", "mujoco", "gymnasium", "numpy", "scipy", "numba")
 
 
-def prepare(folder: Path) -> None:
-    """Make the folder, or say now rather than after the run that it cannot be written.
+@contextmanager
+def run_folder(folder: Path) -> Iterator[None]:
+    """Make sure before a run that its folder can be written; take it away if the run is refused.
 
     Raises:
         TestbedError: If it is a file, or nothing can be written there.
     """
+    is_new = not folder.exists()
+    _make(folder)
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        probe = folder / ".writable"
-        probe.touch()
-        probe.unlink()
-    except OSError as error:
-        raise TestbedError(
-            f"--out {folder}: cannot be written ({error.strerror}); must be a folder of yours"
-        ) from None
+        yield
+    except TestbedError:
+        if is_new and not any(folder.iterdir()):
+            folder.rmdir()
+        raise
 
 
 def write_run(episode: Episode, folder: Path) -> dict[str, Any]:
@@ -44,7 +46,7 @@ def write_run(episode: Episode, folder: Path) -> dict[str, Any]:
     ``config.json``, ``map.pgm`` and ``map.yaml``, ``map.png``, the three trajectories, and last
     ``result.json``: a folder that has one is complete.
     """
-    prepare(folder)
+    _make(folder)
     write_json(folder / "config.json", describe(episode.config))
     write_map(folder / "map.yaml", episode.grid)
     track = episode.track
@@ -89,6 +91,18 @@ def write_json(path: Path, content: dict[str, Any]) -> None:
     """Write JSON that any reader takes: no NaN, a key a line."""
     text = json.dumps(content, indent=2, allow_nan=False) + "\n"
     write_atomically(path, lambda file: file.write(text.encode()))
+
+
+def _make(folder: Path) -> None:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        probe = folder / ".writable"
+        probe.touch()
+        probe.unlink()
+    except OSError as error:
+        raise TestbedError(
+            f"--out {folder}: cannot be written ({error.strerror}); must be a folder of yours"
+        ) from None
 
 
 def _git_commit() -> str | None:

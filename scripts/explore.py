@@ -9,8 +9,7 @@ import tyro
 from tqdm import tqdm
 
 from evaluation.episode import EpisodeConfig, Progress, run_episode
-from evaluation.run_folder import prepare, write_run
-
+from evaluation.run_folder import run_folder, write_run
 from scripts.arguments import is_terminal, parse
 from scripts.first_run import compile_if_needed
 
@@ -29,9 +28,9 @@ def run(arguments: list[str]) -> int:
     options = parse(Explore, "explore", arguments)
     config = options.episode
     out = options.out or Path("runs") / _folder_name(config)
-    prepare(out)
-    compile_if_needed()
-    result = write_run(_watch(config), out)
+    with run_folder(out):
+        compile_if_needed()
+        result = write_run(_watch(config), out)
     print(summary(result))
     print(f"map, picture, trajectories and result.json are in {out}/")
     return 0 if result["stop_reason"] == "complete" else 1

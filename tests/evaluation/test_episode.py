@@ -1,0 +1,110 @@
+"""Whole short episodes in a tiny room: reproducible, complete in their keys, safe to interrupt."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from evaluation.episode import EpisodeConfig, Progress, run_episode
+from evaluation.result import TIMING_KEYS
+from evaluation.run_folder import write_run
+from evaluation.warm_up import TINY_ROOM
+from mapping.errors import TestbedError
+from mapping.io.map_server import read_map
+
+SHORT = EpisodeConfig(world="tiny_room", seed=3, time_limit=15.0)
+
+DESIGN_KEYS = set(
+    "world mapper navigator seed stop_reason sim_time_s wall_time_s real_time_factor coverage "
+    "t90_s t95_s t99_s path_length_m contacts min_clearance_m f1_5cm f1_10cm adnn_m h95_m free_iou "
+    "false_free wall_thickness_ratio ate_rmse_m ate_max_m yaw_error_max_deg map_updates "
+    "scans_dropped map_update_ms_p50 map_update_ms_p99 map_update_rate_hz map_file_kb peak_rss_mb "
+    "home_distance_m dropped_frontiers".split()
+)
+
+FILES = {
+    "config.json",
+    "result.json",
+    "map.pgm",
+    "map.yaml",
+    "map.png",
+    "trajectory.tum",
+    "ground_truth.tum",
+    "odometry.tum",
+}
+
+
+def test_the_same_seed_writes_the_same_bytes_but_for_the_timings(tmp_path: Path) -> None:
+    results = []
+    for name in ("a", "b"):
+        write_run(run_episode(SHORT, plan=TINY_ROOM), tmp_path / name)
+        results.append(json.loads((tmp_path / name / "result.json").read_text()))
+    for key in TIMING_KEYS:
+        for result in results:
+            result.pop(key)
+    assert results[0] == results[1]
+    for file in FILES - {"result.json"}:
+        assert (tmp_path / "a" / file).read_bytes() == (tmp_path / "b" / file).read_bytes(), file
+
+
+def test_a_run_folder_has_every_file_and_every_key_and_its_map_can_be_read(tmp_path: Path) -> None:
+    result = write_run(run_episode(SHORT, plan=TINY_ROOM), tmp_path)
+    assert {path.name for path in tmp_path.iterdir()} == FILES
+    assert set(result) == DESIGN_KEYS
+    assert (read_map(tmp_path / "map.yaml").states == 0).any()
+    config = json.loads((tmp_path / "config.json").read_text())
+    assert config["seed"] == 3
+    assert config["versions"]["mujoco"]
+
+
+def test_another_seed_gives_another_episode() -> None:
+    tracks = [
+        run_episode(EpisodeConfig(seed=seed, time_limit=5.0), plan=TINY_ROOM).track.pose_map
+        for seed in (0, 1)
+    ]
+    assert not np.array_equal(tracks[0], tracks[1])
+
+
+def test_an_episode_out_of_time_says_so() -> None:
+    episode = run_episode(EpisodeConfig(time_limit=2.0), plan=TINY_ROOM)
+    assert episode.stop_reason == "time_limit"
+    assert episode.sim_time == pytest.approx(2.0, abs=0.3), "the first sweep comes before"
+
+
+def test_ctrl_c_ends_an_episode_and_keeps_the_map(tmp_path: Path) -> None:
+    def stop(progress: Progress) -> None:
+        if progress.time > 3.0:
+            raise KeyboardInterrupt
+
+    episode = run_episode(SHORT, stop, plan=TINY_ROOM)
+    assert episode.stop_reason == "interrupted"
+    assert write_run(episode, tmp_path)["coverage"] > 0.1
+
+
+def test_a_navigator_without_a_plan_runs_out_its_time_without_contact() -> None:
+    config = EpisodeConfig(navigator="reactive", time_limit=40.0)
+    episode = run_episode(config, plan=TINY_ROOM)
+    assert episode.stop_reason == "time_limit"
+    assert episode.contacts == 0
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"seed": -1},
+        {"time_limit": 0.0},
+        {"time_limit": float("nan")},
+        {"resolution": 0.0},
+        {"resolution": float("nan")},
+    ],
+)
+def test_a_config_that_makes_no_episode_is_refused(wrong: dict[str, float]) -> None:
+    with pytest.raises(TestbedError, match=next(iter(wrong))):
+        EpisodeConfig(**wrong)
+
+
+@pytest.mark.parametrize("field", ["mapper", "navigator", "odometry", "lidar"])
+def test_an_unknown_name_is_refused_with_the_known_ones(field: str) -> None:
+    with pytest.raises(TestbedError, match=r"nonsense.*(must be|one of)"):
+        run_episode(EpisodeConfig(**{field: "nonsense"}), plan=TINY_ROOM)
