@@ -1,1 +1,1 @@
-"""Turns laser scans, odometry and IMU readings into a pose and an occupancy grid, and scores both."""
+"""Turns laser scans, odometry and IMU readings into a pose and an occupancy grid; scores both."""

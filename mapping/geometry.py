@@ -48,20 +48,17 @@ def transform_points(pose: ArrayLike, points: ArrayLike) -> NDArray[np.float64]:
     """Points ``(n, 2)`` given in the frame of ``pose``, in the frame that ``pose`` is given in."""
     pose, points = np.asarray(pose, dtype=np.float64), np.asarray(points, dtype=np.float64)
     cos, sin = np.cos(pose[2]), np.sin(pose[2])
-    return points @ np.array([[cos, sin], [-sin, cos]]) + pose[:2]
+    return np.asarray(points @ np.array([[cos, sin], [-sin, cos]]) + pose[:2])
 
 
 def wrap_to_pi(angle: ArrayLike) -> NDArray[np.float64]:
     """The same angle [rad] in (-pi, pi]; NaN stays NaN."""
     angle = np.asarray(angle, dtype=np.float64)
-    return np.pi - np.mod(np.pi - angle, 2.0 * np.pi)
+    return np.asarray(np.pi - np.mod(np.pi - angle, 2.0 * np.pi))
 
 
 def circular_mean(angles: ArrayLike, weights: ArrayLike | None = None) -> float:
     """The mean direction [rad] of angles ``(n,)``; not the arithmetic mean, which fails at +-pi."""
     angles = np.asarray(angles, dtype=np.float64)
-    return float(
-        np.arctan2(
-            np.average(np.sin(angles), weights=weights), np.average(np.cos(angles), weights=weights)
-        )
-    )
+    each = np.ones_like(angles) if weights is None else np.asarray(weights, dtype=np.float64)
+    return float(np.arctan2(np.sum(each * np.sin(angles)), np.sum(each * np.cos(angles))))

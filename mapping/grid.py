@@ -1,4 +1,4 @@
-"""The occupancy grid: log odds in an array, where its cells lie in the world, what state they are in.
+"""The occupancy grid: log odds in an array, where its cells lie in the world, their states.
 
 Row is y, column is x, and row 0 lies at the origin: only image writers flip. The origin is the
 lower-left corner of cell (0, 0), as map_server has it, so a cell's centre is
@@ -15,8 +15,9 @@ from mapping.errors import TestbedError
 UNKNOWN, FREE, OCCUPIED = -1, 0, 100
 """Cell states, with the values that nav_msgs/OccupancyGrid gives them."""
 
-TILE_CELLS = 256
-"""A growing grid grows by whole tiles of this many cells, so that it seldom has to."""
+TILE_CELLS = 240
+"""A growing grid grows by whole tiles of this many cells, so that it seldom has to; a number that
+many whole numbers divide, so that coarser grids laid over it keep their cells."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -91,7 +92,7 @@ class OccupancyGrid:
     def contains(self, cells: ArrayLike) -> NDArray[np.bool_]:
         """Whether cells ``(..., 2)`` as (row, column) lie in the grid."""
         cells = np.asarray(cells)
-        return np.all((cells >= 0) & (cells < self.shape), axis=-1)
+        return np.asarray(np.all((cells >= 0) & (cells < self.shape), axis=-1))
 
     def states(self) -> NDArray[np.int8]:
         """The state of every cell: UNKNOWN, FREE or OCCUPIED."""

@@ -23,6 +23,10 @@ class Mapper(Protocol):
     def updates(self) -> int:
         """How many scans went into the map."""
 
+    @property
+    def scans_dropped(self) -> int:
+        """How many new scans did not: gated, unusable, or without a pose for their time."""
+
     def update(
         self, scan: LaserScan | None, odometry: Sequence[Odometry], imu: Sequence[Imu] = ()
     ) -> None:

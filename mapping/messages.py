@@ -61,12 +61,14 @@ class LaserScan:
     @property
     def angles(self) -> NDArray[np.float64]:
         """Direction of every beam ``(n,)`` in the sensor frame [rad]."""
-        return self.angle_min + np.arange(len(self.ranges)) * self.angle_increment
+        beams = np.arange(len(self.ranges), dtype=np.float64)
+        return self.angle_min + beams * self.angle_increment
 
     @property
     def beam_stamps(self) -> NDArray[np.float64]:
         """Time of every beam ``(n,)`` [s]."""
-        return self.stamp + np.arange(len(self.ranges)) * self.time_increment
+        beams = np.arange(len(self.ranges), dtype=np.float64)
+        return self.stamp + beams * self.time_increment
 
     @classmethod
     def from_observation(cls, observation: Observation) -> "LaserScan | None":

@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from mapping.burger import ROBOT_RADIUS
 from mapping.errors import TestbedError
-from mapping.grid import OccupancyGrid
-from nav.costmap_kernels import measure_clearance, pool_states, price
+from mapping.grid import UNKNOWN, OccupancyGrid
+from nav.costmap_kernels import Window, measure_clearance, pool_states, price
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,9 +48,19 @@ class Costmap:
         self.config = config or CostmapConfig()
         self.resolution = self.config.resolution
         self.origin = np.zeros(2)
-        self.states: NDArray[np.int8] = np.full((0, 0), -1, dtype=np.int8)
+        self.states: NDArray[np.int8] = np.full((0, 0), UNKNOWN, dtype=np.int8)
         self.clearance: NDArray[np.float32] = np.zeros((0, 0), dtype=np.float32)
         self.cost: NDArray[np.float32] = np.zeros((0, 0), dtype=np.float32)
+
+    def glance(self, grid: OccupancyGrid, center: ArrayLike, reach: float) -> None:
+        """Take over the states alone: enough to see what is known, and three times cheaper.
+
+        Clearance and cost stay as they were until the next ``refresh``, which must cover as much.
+        """
+        if self._fits(grid):
+            self._pool(grid, self._window(np.asarray(center, dtype=np.float64), reach))
+        else:
+            self.refresh(grid)
 
     def refresh(
         self, grid: OccupancyGrid, center: ArrayLike | None = None, reach: float = np.inf
@@ -59,20 +69,14 @@ class Costmap:
 
         Without a centre, or when the map has grown since, everything is taken over.
         """
-        factor = max(1, round(self.config.resolution / grid.resolution))
-        shape = (-(-grid.shape[0] // factor), -(-grid.shape[1] // factor))
-        moved = shape != self.states.shape or not np.array_equal(self.origin, grid.origin)
-        if moved:
-            self.resolution = factor * grid.resolution
-            self.origin = grid.origin.copy()
-            self.states = np.full(shape, -1, dtype=np.int8)
-            self.clearance = np.full(shape, self.config.inflation, dtype=np.float32)
-            self.cost = np.full(shape, np.inf, dtype=np.float32)
-        if moved or center is None or not np.isfinite(reach):
-            window = (0, shape[0], 0, shape[1])
-        else:
+        rows, columns = self._shape_over(grid)
+        window = (0, rows, 0, columns)
+        if not self._fits(grid):
+            self._lay_over(grid)
+        elif center is not None and np.isfinite(reach):
             window = self._window(np.asarray(center, dtype=np.float64), reach)
-        self._take_over(grid, factor, window)
+        self._pool(grid, window)
+        self._measure(grid, window)
 
     def world_to_cell(self, points: ArrayLike) -> NDArray[np.int64]:
         """The cells ``(..., 2)`` as (row, column) that hold points ``(..., 2)`` as (x, y) [m]."""
@@ -92,7 +96,29 @@ class Costmap:
             return float(self.clearance[row, column])
         return 0.0
 
-    def _window(self, center: NDArray[np.float64], reach: float) -> tuple[int, int, int, int]:
+    def _factor(self, grid: OccupancyGrid) -> int:
+        """Fine cells along the edge of a planning cell."""
+        return max(1, round(self.config.resolution / grid.resolution))
+
+    def _shape_over(self, grid: OccupancyGrid) -> tuple[int, int]:
+        rows, columns = grid.shape
+        factor = self._factor(grid)
+        return -(-rows // factor), -(-columns // factor)
+
+    def _fits(self, grid: OccupancyGrid) -> bool:
+        """Whether the planning grid still lies over the map: it has not grown since."""
+        same_shape = self.states.shape == self._shape_over(grid)
+        return same_shape and np.array_equal(self.origin, grid.origin)
+
+    def _lay_over(self, grid: OccupancyGrid) -> None:
+        shape = self._shape_over(grid)
+        self.resolution = self._factor(grid) * grid.resolution
+        self.origin = grid.origin.copy()
+        self.states = np.full(shape, UNKNOWN, dtype=np.int8)
+        self.clearance = np.full(shape, self.config.inflation, dtype=np.float32)
+        self.cost = np.full(shape, np.inf, dtype=np.float32)
+
+    def _window(self, center: NDArray[np.float64], reach: float) -> Window:
         (top, left), (bottom, right) = self.world_to_cell([center - reach, center + reach])
         rows, columns = self.states.shape
         return (
@@ -102,19 +128,21 @@ class Costmap:
             int(np.clip(right + 1, 0, columns)),
         )
 
-    def _take_over(
-        self, grid: OccupancyGrid, factor: int, window: tuple[int, int, int, int]
-    ) -> None:
-        config = self.config
+    def _pool(self, grid: OccupancyGrid, window: Window) -> None:
+        factor = self._factor(grid)
         pool_states(
             grid.log_odds,
             np.float32(grid.config.free_below),
             np.float32(grid.config.occupied_above),
             factor,
-            int(np.ceil(config.known_share * factor**2)),
+            int(np.ceil(self.config.known_share * factor**2)),
             window,
             self.states,
         )
+
+    def _measure(self, grid: OccupancyGrid, window: Window) -> None:
+        """Clearance and cost of the window and of what lies within its reach."""
+        config = self.config
         margin = int(np.ceil(config.inflation / self.resolution)) + 1
         rows, columns = self.states.shape
         top, bottom, left, right = window
@@ -127,7 +155,7 @@ class Costmap:
         measure_clearance(
             grid.log_odds,
             np.float32(grid.config.occupied_above),
-            factor,
+            self._factor(grid),
             np.float32(self.resolution),
             np.float32(config.inflation),
             widened,

@@ -15,6 +15,7 @@ from mapping.grid import OccupancyGrid
 from mapping.messages import LaserScan, Twist
 from nav.costmap import Costmap, CostmapConfig
 from nav.decision import DecisionConfig, choose
+from nav.former_walls import FormerWalls, FormerWallsConfig
 from nav.frontier import (
     Frontier,
     FrontierConfig,
@@ -39,13 +40,16 @@ class ExplorerConfig:
 
     costmap: CostmapConfig = CostmapConfig()
     frontier: FrontierConfig = FrontierConfig()
+    former_walls: FormerWallsConfig = FormerWallsConfig()
     decision: DecisionConfig = DecisionConfig()
     follower: FollowerConfig = FollowerConfig()
     safety: SafetyConfig = SafetyConfig()
     recovery: RecoveryConfig = RecoveryConfig()
+    first_look: float = 1.0
+    """Time to stand and look before the first decision [s]: a mapper may want several scans."""
     decide_every: float = 2.0
     """Longest time between two decisions while driving [s]."""
-    glance_every: float = 0.8
+    glance_every: float = 1.0
     """How often the goal's worth is looked at while driving [s]."""
     worth_left: float = 0.35
     """Share of the promised gain below which a goal is left for a better one."""
@@ -89,6 +93,7 @@ class FrontierExplorer:
         self._scan_points = ScanPoints()
         self._headway = Headway()
         self._given_up = GivenUp()
+        self._former_walls = FormerWalls(self.config.former_walls)
         self._task = Task.EXPLORE
         self._home: Pose | None = None
         self._target: Viewpoint | None = None
@@ -96,6 +101,7 @@ class FrontierExplorer:
         self._frontiers: list[Frontier] = []
         self._recoveries = 0
         self._decided_at = self._glanced_at = -np.inf
+        self._elapsed = 0.0
 
     @property
     def plan(self) -> Plan:
@@ -114,7 +120,8 @@ class FrontierExplorer:
         new_scan = self._scan_points.update(
             scan, pose_map, self._period, self.config.obstacle_reach
         )
-        if self.status != RUNNING or scan is None:
+        self._elapsed += self._period
+        if self.status != RUNNING or self._elapsed < self.config.first_look:
             return self._move(Twist(), pose_map, grid)
         if self._recovery.active:
             twist = self._recovery.command(pose_map, self._scan_points.points, self._period)
@@ -179,12 +186,13 @@ class FrontierExplorer:
         if now - self._glanced_at < self.config.glance_every or self._target is None:
             return False
         self._glanced_at = now
-        self._look(grid, pose)
+        self._costmap.glance(grid, pose[:2], self.config.changed_reach)
         left = gain_at(self._costmap, self._target.place, self.config.frontier)
         return left < self.config.worth_left * self._target.gain
 
     def _look(self, grid: OccupancyGrid, pose: Pose) -> None:
         self._costmap.refresh(grid, pose[:2], self.config.changed_reach)
+        self._former_walls.note(self._costmap, pose[:2])
 
     def _path_is_blocked(self) -> bool:
         """Whether the newest returns lie on the next stretch of the path."""
@@ -216,7 +224,7 @@ class FrontierExplorer:
     def _best_viewpoint(self, pose: Pose) -> tuple[Viewpoint | None, CostField]:
         """The best viewpoint among the nearest ring that has any, and the cost field it is from."""
         config = self.config
-        self._frontiers = find_frontiers(self._costmap, config.frontier)
+        self._frontiers = find_frontiers(self._costmap, config.frontier, self._former_walls)
         open_ones = [item for item in self._frontiers if not self._given_up.holds(item)]
         for ring in config.near_rings:
             field = CostField.around(self._costmap, pose[:2], max_cost=ring)
@@ -235,10 +243,10 @@ class FrontierExplorer:
                 self._given_up.give_up(frontier, "no known way to a place that sees it")
 
     def _is_shut_in(self, field: CostField) -> bool:
-        """Whether the robot cannot leave where it stands although there is more to see."""
+        """Whether the robot knows of no room to move in: hemmed in, or seeing nothing at all."""
         reachable = np.isfinite(field.cost_to_come).sum() * self._costmap.resolution**2
         body = np.pi * self.config.costmap.lethal_clearance**2
-        return bool(reachable < body and self._frontiers)
+        return bool(reachable < body)
 
     def _go_home(self, pose: Pose) -> None:
         assert self._home is not None

@@ -16,6 +16,7 @@ from scipy import ndimage
 from mapping.burger import LIDAR_RANGE_MAX
 from mapping.errors import TestbedError
 from nav.costmap import Costmap
+from nav.former_walls import FormerWalls
 from nav.frontier_kernels import cheapest_view, expected_gain, mark_frontier
 from nav.planner import CostField
 
@@ -72,9 +73,20 @@ class Viewpoint:
     """Cost of the way there [m, dearer near things]."""
 
 
-def find_frontiers(costmap: Costmap, config: FrontierConfig) -> list[Frontier]:
-    """Every frontier of at least ``min_cells`` cells, in the order of their labels."""
-    labels, _ = ndimage.label(mark_frontier(costmap.states), structure=EIGHT_CONNECTED)
+def find_frontiers(
+    costmap: Costmap, config: FrontierConfig, former_walls: FormerWalls | None = None
+) -> list[Frontier]:
+    """Every frontier of at least ``min_cells`` cells, in the order of their labels.
+
+    Args:
+        costmap: Where to look.
+        config: What counts.
+        former_walls: Where walls were known to be; frontiers there are left out.
+    """
+    marked = mark_frontier(costmap.states)
+    if former_walls is not None:
+        former_walls.unmark(costmap, marked)
+    labels, _ = ndimage.label(marked, structure=EIGHT_CONNECTED)
     frontiers = []
     for index, box in enumerate(ndimage.find_objects(labels), start=1):
         cells = np.argwhere(labels[box] == index) + [box[0].start, box[1].start]

@@ -9,7 +9,10 @@ from mapping.grid import FREE, OCCUPIED, UNKNOWN
 
 @njit(cache=True)
 def mark_frontier(states: NDArray[np.int8]) -> NDArray[np.int8]:
-    """1 for every free cell with an unknown neighbour of four, else 0."""
+    """1 for every free cell with an unknown neighbour of four and no occupied one of eight, else 0.
+
+    Where a wall was seen from afar its returns lie apart: the holes between them are no frontier.
+    """
     rows, columns = states.shape
     marked = np.zeros((rows, columns), dtype=np.int8)
     for i in range(rows):
@@ -20,8 +23,19 @@ def mark_frontier(states: NDArray[np.int8]) -> NDArray[np.int8]:
                 or (j > 0 and states[i, j - 1] == UNKNOWN)
                 or (j < columns - 1 and states[i, j + 1] == UNKNOWN)
             ):
-                marked[i, j] = 1
+                marked[i, j] = not touches_occupied(states, i, j)
     return marked
+
+
+@njit(cache=True)
+def touches_occupied(states: NDArray[np.int8], row: int, column: int) -> bool:
+    """Whether one of a cell's eight neighbours is occupied."""
+    rows, columns = states.shape
+    for i in range(max(row - 1, 0), min(row + 2, rows)):
+        for j in range(max(column - 1, 0), min(column + 2, columns)):
+            if states[i, j] == OCCUPIED:
+                return True
+    return False
 
 
 @njit(cache=True)
@@ -73,7 +87,8 @@ def expected_gain(
 ) -> int:
     """How many unknown cells a lidar in a cell would see, each counted once.
 
-    A beam ends at an occupied cell, at ``reach`` cells, or ``depth`` cells into the unknown.
+    A beam ends at an occupied cell, at ``reach`` cells, ``depth`` cells into the unknown, or where
+    it would enter the unknown beside an occupied cell: that is a hole in a wall seen from afar.
     """
     rows, columns = states.shape
     span = int(np.ceil(reach)) + 1
@@ -90,8 +105,47 @@ def expected_gain(
             if state == OCCUPIED or into >= depth:
                 break
             if state == UNKNOWN:
+                if into == 0.0 and inside and touches_occupied(states, i, j):
+                    break
                 into += 1.0
                 if not seen[i - row + span, j - column + span]:
                     seen[i - row + span, j - column + span] = True
                     count += 1
     return count
+
+
+@njit(cache=True)
+def note_walls(
+    states: NDArray[np.int8], row: int, column: int, reach: float, walls: NDArray[np.bool_]
+) -> None:
+    """Mark the occupied cells within ``reach`` cells of a cell as walls."""
+    rows, columns = states.shape
+    span = int(np.ceil(reach))
+    for i in range(max(row - span, 0), min(row + span + 1, rows)):
+        for j in range(max(column - span, 0), min(column + span + 1, columns)):
+            if states[i, j] == OCCUPIED and np.hypot(i - row, j - column) <= reach:
+                walls[i, j] = True
+
+
+@njit(cache=True)
+def unmark_near_former_walls(
+    marked: NDArray[np.int8], walls: NDArray[np.bool_], states: NDArray[np.int8], reach: int
+) -> None:
+    """Unmark every cell with a wall that is occupied no more within ``reach`` cells."""
+    rows, columns = marked.shape
+    for i in range(rows):
+        for j in range(columns):
+            if marked[i, j] and _former_wall_near(walls, states, i, j, reach):
+                marked[i, j] = 0
+
+
+@njit(cache=True)
+def _former_wall_near(
+    walls: NDArray[np.bool_], states: NDArray[np.int8], row: int, column: int, reach: int
+) -> bool:
+    rows, columns = walls.shape
+    for i in range(max(row - reach, 0), min(row + reach + 1, rows)):
+        for j in range(max(column - reach, 0), min(column + reach + 1, columns)):
+            if walls[i, j] and states[i, j] != OCCUPIED:
+                return True
+    return False

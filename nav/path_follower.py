@@ -34,6 +34,11 @@ class FollowerConfig:
     """Heading error from which the robot stops and turns [rad]."""
     drive_again_below: float = 0.35
     """Heading error at which it drives again [rad]."""
+    unwind_above: float = 2.2
+    """Heading error from which the robot may turn the long way round, if that undoes earlier turns
+    [rad]: the error of the wheel base grows with the turns that are left standing."""
+    wound_up_above: float = 3.5
+    """Turns left standing from which it does so [rad]."""
     turn_gain: float = 2.5
     """Turn rate per heading error when turning on the spot [1/s]."""
     approach_gain: float = 1.2
@@ -51,7 +56,9 @@ class PathFollower:
         self._path: NDArray[np.float64] = np.zeros((0, 2))
         self._along: NDArray[np.float64] = np.zeros(0)
         self._progress = 0
-        self._turning = False
+        self._turn = 0.0
+        self._wound = 0.0
+        self._yaw: float | None = None
 
     @property
     def path_ahead(self) -> NDArray[np.float64]:
@@ -83,14 +90,27 @@ class PathFollower:
         target = self._point_ahead(ahead)
         offset = target - pose[:2]
         error = float(wrap_to_pi(np.arctan2(offset[1], offset[0]) - pose[2]))
-        threshold = config.drive_again_below if self._turning else config.turn_on_spot_above
-        self._turning = abs(error) > threshold
+        self._turn = self._turn_direction(error, float(pose[2]))
         wanted = (
-            Twist(angular_z=config.turn_gain * error)
-            if self._turning
+            Twist(angular_z=self._turn * config.turn_gain * abs(error))
+            if self._turn
             else self._arc(error, float(np.hypot(*offset)), left, openness)
         )
         return self.config.limits.approach(wanted, self.last)
+
+    def _turn_direction(self, error: float, yaw: float) -> float:
+        """Which way to turn on the spot, +1 or -1, or 0 to drive; kept until the turn is done."""
+        self._wound += 0.0 if self._yaw is None else float(wrap_to_pi(yaw - self._yaw))
+        self._yaw = yaw
+        config = self.config
+        threshold = config.drive_again_below if self._turn else config.turn_on_spot_above
+        if abs(error) < threshold:
+            return 0.0
+        if self._turn:
+            return self._turn
+        short_way = float(np.sign(error))
+        winds_up = self._wound * short_way > config.wound_up_above
+        return -short_way if winds_up and abs(error) > config.unwind_above else short_way
 
     def _arc(self, error: float, distance: float, left: float, openness: float) -> Twist:
         config = self.config

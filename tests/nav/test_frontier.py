@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mapping.grid import FREE, UNKNOWN
+from mapping.grid import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
+from nav.former_walls import FormerWalls
 from nav.frontier import FrontierConfig, find_frontiers, find_viewpoints, gain_at
 from nav.frontier_kernels import mark_frontier
 from nav.planner import CostField
@@ -22,13 +23,10 @@ def plain_frontier(states: np.ndarray) -> np.ndarray:
     marked = np.zeros(states.shape, dtype=bool)
     for i in range(rows):
         for j in range(columns):
-            around = (
-                padded[i, j + 1],
-                padded[i + 2, j + 1],
-                padded[i + 1, j],
-                padded[i + 1, j + 2],
-            )
-            marked[i, j] = states[i, j] == FREE and UNKNOWN in around
+            cross = padded[[i, i + 2, i + 1, i + 1], [j + 1, j + 1, j, j + 2]]
+            block = padded[i : i + 3, j : j + 3]
+            borders = states[i, j] == FREE and (cross == UNKNOWN).any()
+            marked[i, j] = borders and not (block == OCCUPIED).any()
     return marked
 
 
@@ -42,8 +40,44 @@ def test_the_marked_frontier_equals_a_plain_look_at_every_cell(seed: int) -> Non
 def test_one_open_side_is_one_frontier() -> None:
     costmap = costmap_of(grid_from_text(ROOM_WITH_UNKNOWN_EAST))
     (frontier,) = find_frontiers(costmap, FrontierConfig())
-    assert frontier.size == pytest.approx(40 * 0.05)
+    assert frontier.size == pytest.approx(38 * 0.05), "its two ends touch the walls"
     assert frontier.middle == pytest.approx([40.5 * 0.05, 20.5 * 0.05], abs=0.06)
+
+
+def test_a_hole_of_one_cell_in_a_wall_seen_from_afar_is_no_frontier() -> None:
+    rows = ["?" * 22] + ["#" * 22] + ["#" + "." * 20 + "#"] * 20 + ["#" * 22]
+    rows[1] = "#" * 10 + "." + "#" * 11
+    assert find_frontiers(costmap_of(grid_from_text("\n".join(rows))), FrontierConfig()) == []
+
+
+def test_space_that_opens_where_a_wall_was_is_no_frontier_but_a_new_door_far_off_is() -> None:
+    former_walls = FormerWalls()
+    picture = ROOM_WITH_UNKNOWN_EAST.replace(".?", "#?")
+    walled, opened = grid_from_text(picture), grid_from_text(ROOM_WITH_UNKNOWN_EAST)
+    former_walls.note(costmap_of(walled), (1.0, 1.0))
+    costmap = costmap_of(opened)
+    assert find_frontiers(costmap, FrontierConfig(), former_walls) == []
+    never_near = FormerWalls()
+    never_near.note(costmap_of(walled), (-3.0, 1.0))
+    assert len(find_frontiers(costmap, FrontierConfig(), never_near)) == 1
+
+
+def test_former_walls_keep_their_places_when_the_map_grows() -> None:
+    grid = OccupancyGrid()
+    grid.log_odds[:] = -5.0
+    grid.log_odds[:, 260:265] = 5.0
+    costmap = costmap_of(grid)
+    former_walls = FormerWalls()
+    former_walls.note(costmap, (0.0, 0.0))
+    grid.cover(-4.0, 1.0, -4.0, 1.0)
+    costmap.refresh(grid)
+    states = costmap.states.copy()
+    costmap.states[states == OCCUPIED] = FREE
+    marked = np.ones(costmap.states.shape, dtype=np.int8)
+    former_walls.unmark(costmap, marked)
+    assert not marked[states == OCCUPIED].all()
+    assert marked[tuple(costmap.world_to_cell((-1.0, 0.0)))]
+    assert not marked[tuple(costmap.world_to_cell((0.06, 0.0)))]
 
 
 def test_a_closed_room_has_no_frontier() -> None:

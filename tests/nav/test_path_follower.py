@@ -1,5 +1,7 @@
 """The follower on a robot that does exactly what it is told."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -29,12 +31,8 @@ def drive(follower: PathFollower, pose: np.ndarray, seconds: float, clearance: f
 
 
 def distance_to_path(poses: np.ndarray, path: np.ndarray) -> np.ndarray:
-    dense = np.concatenate(
-        [
-            a + np.linspace(0, 1, 200)[:, None] * (b - a)
-            for a, b in zip(path, path[1:], strict=False)
-        ]
-    )
+    shares = np.linspace(0.0, 1.0, 200)[:, None]
+    dense = np.concatenate([a + shares * (b - a) for a, b in pairwise(path)])
     return np.hypot(*(poses[:, None, :2] - dense).transpose(2, 0, 1)).min(axis=1)
 
 

@@ -1,0 +1,92 @@
+"""Turns odometry messages into the pose that the robot had at any moment, as when a beam was shot.
+
+The LDS-01 takes 0.2 s for a turn; at full spin the robot turns 30 degrees meanwhile, so a scan
+drawn from one pose is badly bent.
+"""
+
+from collections import deque
+from collections.abc import Sequence
+from math import isfinite
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from mapping.geometry import Pose, wrap_to_pi
+from mapping.messages import Odometry
+
+KEEP_S = 0.6
+"""Odometry older than this before the newest [s] is forgotten: three turns of the LDS-01, so that
+a scan may come a turn late."""
+
+REACH_S = 0.25
+"""How far [s] poses are extrapolated: a scan's 0.2 s and one and a half odometry periods."""
+
+
+class OdometryTrack:
+    """The odometry of the last moments."""
+
+    def __init__(self) -> None:
+        self._rows: deque[tuple[float, ...]] = deque()
+
+    @property
+    def newest(self) -> Pose | None:
+        """The newest pose ``(3,)``, or None before the first message."""
+        return np.array(self._rows[-1][1:4]) if self._rows else None
+
+    @property
+    def newest_turn_rate(self) -> float:
+        """The newest turn rate [rad/s], 0 before the first message."""
+        return self._rows[-1][5] if self._rows else 0.0
+
+    def add(self, odometry: Sequence[Odometry]) -> None:
+        """Take new messages; one that is not finite, or no newer than the newest, is ignored."""
+        for message in odometry:
+            twist = message.twist
+            x, y, yaw = message.pose_odom.tolist()
+            row = (message.stamp, x, y, yaw, twist.linear_x, twist.angular_z)
+            if all(map(isfinite, row)) and (not self._rows or row[0] > self._rows[-1][0]):
+                self._rows.append(row)
+        while self._rows and self._rows[0][0] < self._rows[-1][0] - KEEP_S:
+            self._rows.popleft()
+
+    def poses_at(self, stamps: ArrayLike) -> Pose | None:
+        """The poses ``(n, 3)`` at moments ``(n,)`` [s], in the odometry's frame.
+
+        Between messages poses are interpolated, yaw the short way round; outside of them the robot
+        goes on, or came, along the arc of the nearest message's twist.
+
+        Returns:
+            None when there is no odometry within REACH_S of every moment.
+        """
+        stamps = np.asarray(stamps, dtype=np.float64)
+        if not self._rows or not np.all(np.isfinite(stamps)):
+            return None
+        rows = np.array(self._rows)
+        first, last = rows[0, 0], rows[-1, 0]
+        if stamps.size and (stamps.min() < first - REACH_S or stamps.max() > last + REACH_S):
+            return None
+        within = np.clip(stamps, first, last)
+        yaw = np.unwrap(rows[:, 3])
+        poses = np.stack(
+            [np.interp(within, rows[:, 0], column) for column in (rows[:, 1], rows[:, 2], yaw)],
+            axis=-1,
+        )
+        nearest = np.where(stamps[:, np.newaxis] < first, rows[0, 4:6], rows[-1, 4:6])
+        return _advance(poses, nearest, stamps - within)
+
+
+def _advance(
+    poses: Pose, twists: NDArray[np.float64], durations: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Poses ``(n, 3)`` after driving twists ``(n, 2)`` for durations ``(n,)``, by midpoint yaw."""
+    turned = twists[:, 1] * durations
+    gone = twists[:, 0] * durations
+    heading = poses[:, 2] + 0.5 * turned
+    return np.stack(
+        (
+            poses[:, 0] + gone * np.cos(heading),
+            poses[:, 1] + gone * np.sin(heading),
+            wrap_to_pi(poses[:, 2] + turned),
+        ),
+        axis=-1,
+    )
