@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from envs.floor_plan import FloorPlan
 from envs.truth import truth_of_plan
 from envs.worlds import load_world
-from mapping.compare import CoverageMeter
+from mapping.burger import LIDAR_RANGE_MAX, MAX_LINEAR_SPEED
+from mapping.coverage import CoverageMeter
 from mapping.errors import TestbedError
 from mapping.grid import OccupancyGrid
 from mapping.mappers import make_mapper
@@ -177,7 +178,7 @@ def _drive(
             stop_reason = agent.navigator.status
             if time >= next_report or stop_reason != RUNNING:
                 next_report = time + 1.0
-                coverages.append((time, meter.measure(agent.mapper.grid)))
+                coverages.append((time, meter.measure(agent.mapper.grid, _changed(agent))))
                 if on_progress is not None:
                     on_progress(_progress(time, coverages[-1][1], agent))
             if stop_reason != RUNNING:
@@ -209,6 +210,13 @@ def _drive(
         navigator_seconds=np.array(agent.navigator_seconds),
         dropped_frontiers=agent.navigator.dropped_frontiers,
     )
+
+
+def _changed(agent: MappingAgent) -> tuple[float, float, float, float]:
+    """Left, right, bottom and top [m] of what the last simulated second may have changed."""
+    x, y, _ = agent.mapper.pose_map
+    reach = LIDAR_RANGE_MAX + 2.0 * MAX_LINEAR_SPEED
+    return float(x - reach), float(x + reach), float(y - reach), float(y + reach)
 
 
 def _note(track: Track, observation: Any, info: dict[str, Any], agent: MappingAgent) -> None:

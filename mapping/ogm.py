@@ -6,8 +6,8 @@ so that what has gone disappears from the map within a second however long it st
 
 The settings were tuned in turtlebot3_world and in an empty room of 6 x 6 m crossed 2.5 m from its
 walls, at 1 cm, with the datasheet's noise and true poses. In the second, all that is seen of the
-walls are far readings of 3.5 cm standard deviation: there a margin below 1.2 sigma, or a hit worth
-less, wipes out more wall than it draws. In the first, a larger margin only costs free space.
+walls are far readings of 3.5 cm standard deviation: there a smaller margin before the reading, or a
+hit worth less, wipes out more wall than it draws. In the first, a margin only costs free space.
 """
 
 from dataclasses import dataclass
@@ -47,8 +47,11 @@ class OgmConfig:
     """Lower clamp; a thing that comes is on the map after four near scans, 0.8 s."""
     highest: float = 7.0
     """Upper clamp; a thing that goes is off the map after three scans, 0.6 s."""
-    clear_sigmas: float = 1.3
-    """What lies nearer before a reading than this many standard deviations is not cleared."""
+    clear_sigmas: float = 2.0
+    """Before a reading, this many times the noise that exceeds ``sharp_cells`` is not cleared."""
+    sharp_cells: float = 1.4
+    """Up to this standard deviation, in cells, readings of one wall fall into the same few cells
+    often enough to outweigh those that went too far, and space is cleared up to the reading."""
     link: float = 0.1
     """Readings in turn that end this near to one another [m] belong to one wall (thesis 5.1:
     narrower than the robot's 0.178 m, so no passage is lost)."""
@@ -63,7 +66,7 @@ class OgmConfig:
             value = getattr(self, name)
             if not (np.isfinite(value) and value > 0.0):
                 raise TestbedError(f"{name}: {value}; must be a finite number above 0")
-        for name in ("clear_sigmas", "link"):
+        for name in ("clear_sigmas", "sharp_cells", "link"):
             value = getattr(self, name)
             if not (np.isfinite(value) and value >= 0.0):
                 raise TestbedError(f"{name}: {value}; must be a finite number, 0 or more")
@@ -122,7 +125,8 @@ class Ogm(OdometryMapper):
         """
         config, grid = self.config, self.grid
         sigmas = range_sigma(beams.lengths)
-        free = np.maximum(beams.lengths - config.clear_sigmas * sigmas, 0.0)
+        blur = np.maximum(sigmas - config.sharp_cells * grid.resolution, 0.0)
+        free = np.maximum(beams.lengths - config.clear_sigmas * blur, 0.0)
         order = slice(None) if increment > 0.0 else slice(None, None, -1)
         pairs = compare_neighbours(
             directions[order],

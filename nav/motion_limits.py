@@ -2,8 +2,6 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from mapping.errors import TestbedError
 from mapping.messages import Twist
 
@@ -40,8 +38,8 @@ class MotionLimits:
 
         Slowing down is not limited: a robot that must stop may stop.
         """
-        linear = float(np.clip(wanted.linear_x, -self.max_linear, self.max_linear))
-        angular = float(np.clip(wanted.angular_z, -self.max_angular, self.max_angular))
+        linear = _clamp(wanted.linear_x, -self.max_linear, self.max_linear)
+        angular = _clamp(wanted.angular_z, -self.max_angular, self.max_angular)
         return Twist(
             linear_x=_ramp(linear, last.linear_x, self.linear_acceleration * self.period),
             angular_z=_ramp(angular, last.angular_z, self.angular_acceleration * self.period),
@@ -52,4 +50,8 @@ def _ramp(wanted: float, last: float, step: float) -> float:
     if abs(wanted) <= abs(last) and wanted * last >= 0.0:
         return wanted
     start = last if wanted * last >= 0.0 else 0.0
-    return float(np.clip(wanted, start - step, start + step))
+    return _clamp(wanted, start - step, start + step)
+
+
+def _clamp(value: float, low: float, high: float) -> float:
+    return min(max(value, low), high)

@@ -4,15 +4,20 @@ Coulter 1992 for the arc to a point ahead, Macenski et al. 2023 (regulated pure 
 slowing by curvature, by clearance and on approach.
 """
 
+import math
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mapping.geometry import Pose, wrap_to_pi
+from mapping.geometry import Pose
 from mapping.messages import Twist
 from nav.motion_limits import MotionLimits
+from nav.path_kernels import advance, point_ahead
+
+SHORTEST_LOOKAHEAD = 1e-3
+"""A point nearer than this gives no curvature worth dividing by [m]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -73,34 +78,34 @@ class PathFollower:
         self._progress = 0
 
     def distance_left(self, pose: Pose) -> float:
-        """Way left to the end of the path [m]."""
-        self._advance(pose)
-        gap = float(np.hypot(*(self._path[self._progress] - pose[:2])))
-        return gap + float(self._along[-1] - self._along[self._progress])
+        """Way left to the end of the path [m], from the nearest point of it not yet passed."""
+        self._progress, left = advance(self._path, self._along, self._progress, pose)
+        return float(left)
 
     def command(self, pose: Pose, clearance: float) -> Twist:
         """The twist for the next period, within the limits; ``clearance`` is that of the robot."""
-        left = self.distance_left(pose)
         config = self.config
+        left = self.distance_left(pose)
         openness = (clearance - config.tight_clearance) / (
             config.open_clearance - config.tight_clearance
         )
-        openness = float(np.clip(openness, 0.0, 1.0))
-        ahead = config.tight_lookahead + openness * (config.lookahead - config.tight_lookahead)
-        target = self._point_ahead(ahead)
-        offset = target - pose[:2]
-        error = float(wrap_to_pi(np.arctan2(offset[1], offset[0]) - pose[2]))
+        openness = min(max(openness, 0.0), 1.0)
+        lookahead = config.tight_lookahead + openness * (config.lookahead - config.tight_lookahead)
+        x, y = point_ahead(self._path, self._along, self._progress, lookahead)
+        ahead_x, ahead_y = x - float(pose[0]), y - float(pose[1])
+        error = math.remainder(math.atan2(ahead_y, ahead_x) - float(pose[2]), 2.0 * math.pi)
         self._turn = self._turn_direction(error, float(pose[2]))
         wanted = (
             Twist(angular_z=self._turn * config.turn_gain * abs(error))
             if self._turn
-            else self._arc(error, float(np.hypot(*offset)), left, openness)
+            else self._arc(error, math.hypot(ahead_x, ahead_y), left, openness)
         )
-        return self.config.limits.approach(wanted, self.last)
+        return config.limits.approach(wanted, self.last)
 
     def _turn_direction(self, error: float, yaw: float) -> float:
         """Which way to turn on the spot, +1 or -1, or 0 to drive; kept until the turn is done."""
-        self._wound += 0.0 if self._yaw is None else float(wrap_to_pi(yaw - self._yaw))
+        if self._yaw is not None:
+            self._wound += math.remainder(yaw - self._yaw, 2.0 * math.pi)
         self._yaw = yaw
         config = self.config
         threshold = config.drive_again_below if self._turn else config.turn_on_spot_above
@@ -108,34 +113,21 @@ class PathFollower:
             return 0.0
         if self._turn:
             return self._turn
-        short_way = float(np.sign(error))
+        short_way = math.copysign(1.0, error)
         winds_up = self._wound * short_way > config.wound_up_above
         return -short_way if winds_up and abs(error) > config.unwind_above else short_way
 
     def _arc(self, error: float, distance: float, left: float, openness: float) -> Twist:
+        """The arc to the point ahead, as fast as it, the clearance and the way left allow."""
         config = self.config
         limits = config.limits
-        curvature = 2.0 * np.sin(error) / max(distance, 1e-3)
+        curvature = 2.0 * math.sin(error) / max(distance, SHORTEST_LOOKAHEAD)
         speed = config.tight_speed + openness * (limits.max_linear - config.tight_speed)
         speed = min(speed, config.creep_speed + config.approach_gain * left)
-        speed = min(speed, limits.max_angular / max(abs(curvature), 1e-6))
-        speed *= max(np.cos(error), 0.0)
-        return Twist(linear_x=float(speed), angular_z=float(speed * curvature))
-
-    def _advance(self, pose: Pose) -> None:
-        """Move the progress to the nearest path point not far ahead; never back."""
-        window = self._path[self._progress : self._progress + 20]
-        gaps = np.hypot(window[:, 0] - pose[0], window[:, 1] - pose[1])
-        self._progress += int(np.argmin(gaps))
-
-    def _point_ahead(self, distance: float) -> NDArray[np.float64]:
-        along = min(self._along[self._progress] + distance, self._along[-1])
-        return np.array(
-            [
-                np.interp(along, self._along, self._path[:, 0]),
-                np.interp(along, self._along, self._path[:, 1]),
-            ]
-        )
+        if curvature != 0.0:
+            speed = min(speed, limits.max_angular / abs(curvature))
+        speed *= max(math.cos(error), 0.0)
+        return Twist(linear_x=speed, angular_z=speed * curvature)
 
 
 def _densify(path: NDArray[np.float64], spacing: float) -> NDArray[np.float64]:

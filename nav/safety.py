@@ -55,10 +55,9 @@ class Safety:
             scan_points: End points of the newest scan in the map frame ``(n, 2)`` [m].
             grid: The map, for what is too near to be seen.
         """
-        points = np.concatenate((scan_points, self._too_near_to_see(pose, grid)))
         config = self.config
         share = clear_share(
-            points,
+            scan_points,
             pose,
             twist.linear_x,
             twist.angular_z,
@@ -67,21 +66,9 @@ class Safety:
             config.horizon,
             config.steps,
             config.view,
+            (LIDAR_POSE_BASE[0], LIDAR_RANGE_MIN),
+            grid.log_odds,
+            (float(grid.origin[0]), float(grid.origin[1]), grid.resolution),
+            grid.config.occupied_above,
         )
         return Twist(linear_x=share * twist.linear_x, angular_z=share * twist.angular_z)
-
-    def _too_near_to_see(self, pose: Pose, grid: OccupancyGrid) -> NDArray[np.float64]:
-        """Centres of occupied map cells within the lidar's blind radius ``(n, 2)``."""
-        cos, sin = np.cos(pose[2]), np.sin(pose[2])
-        sensor = pose[:2] + LIDAR_POSE_BASE[0] * np.array([cos, sin])
-        radius = LIDAR_RANGE_MIN + grid.resolution
-        (top, left), (bottom, right) = grid.world_to_cell([sensor - radius, sensor + radius])
-        if top < 0 or left < 0:
-            return np.zeros((0, 2))
-        window = grid.log_odds[top : bottom + 1, left : right + 1]
-        cells = np.argwhere(window > grid.config.occupied_above)
-        if len(cells) == 0:
-            return np.zeros((0, 2))
-        points = grid.cell_to_world(cells + [top, left])
-        near: NDArray[np.bool_] = np.hypot(*(points - sensor).T) < radius
-        return points[near]
