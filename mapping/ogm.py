@@ -29,6 +29,10 @@ from mapping.sensor_model import Beams, range_sigma, read_beams
 START_CELLS = 512
 """Cells along each side of the grid at the start; it grows from there."""
 
+BEHIND_CELLS = 0.5
+"""A reading tells where a thing begins; the cell whose centre lies in the thing is half a cell
+farther on. Without this, half of the cells before every wall would be drawn as wall."""
+
 WIDEST_WEDGE = 1.5
 """Beams farther apart than this many of the scan's increments are no neighbours: those between
 them failed, or the robot turned between the scan's last beam and its first."""
@@ -49,7 +53,7 @@ class OgmConfig:
     """Upper clamp; a thing that goes is off the map after three scans, 0.6 s."""
     clear_sigmas: float = 2.0
     """Before a reading, this many times the noise that exceeds ``sharp_cells`` is not cleared."""
-    sharp_cells: float = 1.4
+    sharp_cells: float = 1.6
     """Up to this standard deviation, in cells, readings of one wall fall into the same few cells
     often enough to outweigh those that went too far, and space is cleared up to the reading."""
     link: float = 0.1
@@ -100,7 +104,8 @@ class Ogm(OdometryMapper):
         sensors = compose(compose(self.start_pose_map, poses_odom), self.config.lidar_pose_base)
         angles = sensors[:, 2] + scan.angles[beams.indices]
         directions = np.column_stack((np.cos(angles), np.sin(angles)))
-        ends = sensors[:, :2] + beams.lengths[:, np.newaxis] * directions
+        reach = beams.lengths + BEHIND_CELLS * self.grid.resolution
+        ends = sensors[:, :2] + reach[:, np.newaxis] * directions
         self._cover(sensors, ends)
         self._update(beams, sensors[:, :2], directions, ends, scan.angle_increment)
         return True
@@ -125,6 +130,28 @@ class Ogm(OdometryMapper):
         """
         config, grid = self.config, self.grid
         sigmas = range_sigma(beams.lengths)
+        gains = config.hit * np.minimum(1.0, grid.resolution / sigmas)
+        cells, cell_gains = hit_cells(
+            (ends[beams.hits] - grid.origin) / grid.resolution,
+            gains[beams.hits],
+            config.link / grid.resolution,
+            grid.shape,
+        )
+        outline = self._free_outline(beams, sigmas, origins, directions, increment)
+        raised = raised_values(grid.log_odds, cells, cell_gains, np.float32(config.highest))
+        lower_inside(grid.log_odds, outline, np.float32(config.miss), np.float32(config.lowest))
+        raise_to(grid.log_odds, cells, raised)
+
+    def _free_outline(
+        self,
+        beams: Beams,
+        sigmas: NDArray[np.float64],
+        origins: NDArray[np.float64],
+        directions: NDArray[np.float64],
+        increment: float,
+    ) -> NDArray[np.float64]:
+        """The edges around what the beams saw free, in cells; wants them counter-clockwise."""
+        config, grid = self.config, self.grid
         blur = np.maximum(sigmas - config.sharp_cells * grid.resolution, 0.0)
         free = np.maximum(beams.lengths - config.clear_sigmas * blur, 0.0)
         order = slice(None) if increment > 0.0 else slice(None, None, -1)
@@ -135,22 +162,14 @@ class Ogm(OdometryMapper):
             beams.hits[order],
             WIDEST_WEDGE * abs(increment),
         )
-        outline = free_outline(
-            (origins[order] - grid.origin) / grid.resolution,
-            directions[order],
-            free[order] / grid.resolution,
-            pairs,
+        return np.asarray(
+            free_outline(
+                (origins[order] - grid.origin) / grid.resolution,
+                directions[order],
+                free[order] / grid.resolution,
+                pairs,
+            )
         )
-        gains = config.hit * np.minimum(1.0, grid.resolution / sigmas)
-        cells, cell_gains = hit_cells(
-            (ends[beams.hits] - grid.origin) / grid.resolution,
-            gains[beams.hits],
-            config.link / grid.resolution,
-            grid.shape,
-        )
-        raised = raised_values(grid.log_odds, cells, cell_gains, np.float32(config.highest))
-        lower_inside(grid.log_odds, outline, np.float32(config.miss), np.float32(config.lowest))
-        raise_to(grid.log_odds, cells, raised)
 
 
 def growing_grid(start_pose_map: ArrayLike, resolution: float | None = None) -> GridConfig:

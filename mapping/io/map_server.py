@@ -93,26 +93,27 @@ def write_map(
     yaml_path = stem.parent / f"{stem.name}.yaml"
     states = grid.states if isinstance(grid, MapFile) else grid.states()
     cropped, row, column = _crop(states, margin_cells)
-    text = yaml.safe_dump(
-        {
-            "image": image_path.name,
-            "mode": "trinary",
-            "resolution": float(grid.resolution),
-            "origin": [
-                float(grid.origin[0] + column * grid.resolution),
-                float(grid.origin[1] + row * grid.resolution),
-                0.0,
-            ],
-            "negate": 0,
-            "occupied_thresh": OCCUPIED_THRESH,
-            "free_thresh": FREE_THRESH,
-        },
-        sort_keys=False,
-    )
+    x = float(grid.origin[0] + column * grid.resolution)
+    y = float(grid.origin[1] + row * grid.resolution)
+    text = _yaml_text(image_path.name, grid.resolution, (x, y))
     image = Image.fromarray(_pixels(cropped))
     write_atomically(image_path, lambda file: image.save(file, format="PPM"))
     write_atomically(yaml_path, lambda file: file.write(text.encode()))
     return yaml_path
+
+
+def _yaml_text(image: str, resolution: float, origin: tuple[float, float]) -> str:
+    """The yaml beside an image, in the order in which map_saver writes its fields."""
+    fields = {
+        "image": image,
+        "mode": "trinary",
+        "resolution": float(resolution),
+        "origin": [*origin, 0.0],
+        "negate": 0,
+        "occupied_thresh": OCCUPIED_THRESH,
+        "free_thresh": FREE_THRESH,
+    }
+    return str(yaml.safe_dump(fields, sort_keys=False))
 
 
 def _read_shade(meta: MapYaml) -> tuple[NDArray[np.float64], NDArray[np.float64] | None]:

@@ -42,8 +42,8 @@ def test_poses_between_and_after_messages_lie_on_the_arc(v: float, w: float, sta
 
 def test_yaw_goes_the_short_way_over_pi() -> None:
     track = OdometryTrack()
-    track.add([message(0.0, 0, 0, 3.0), message(1.0, 0, 0, -3.0)])
-    poses = track.poses_at([0.5])
+    track.add([message(0.0, 0, 0, 3.0), message(0.5, 0, 0, -3.0)])
+    poses = track.poses_at([0.25])
     assert poses is not None
     assert abs(poses[0, 2]) == pytest.approx(np.pi)
 

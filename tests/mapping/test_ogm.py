@@ -10,7 +10,7 @@ from mapping.errors import TestbedError
 from mapping.geometry import compose
 from mapping.grid import FREE, OCCUPIED, GridConfig
 from mapping.messages import LaserScan, Odometry, Twist
-from mapping.ogm import WIDEST_WEDGE, Ogm, OgmConfig
+from mapping.ogm import BEHIND_CELLS, WIDEST_WEDGE, Ogm, OgmConfig
 from mapping.scan_polygon import AGREE_SIGMAS, AGREE_SLOPE, STRIP_HALF_WIDTH
 from mapping.sensor_model import range_sigma
 from tests.mapping.arena import arena_truth, circling, drive, scan_at, standing
@@ -70,7 +70,8 @@ def slow_update(
     ends, gains = [], []
     for angle, r in zip(angles, scan.ranges.astype(float), strict=True):
         if scan.range_min <= r <= 3.5:
-            ends.append(sensor[:2] + r * np.array([np.cos(angle), np.sin(angle)]))
+            reach = r + BEHIND_CELLS * edge
+            ends.append(sensor[:2] + reach * np.array([np.cos(angle), np.sin(angle)]))
             gains.append(config.hit * min(1.0, edge / float(range_sigma(r))))
     hits = [(end, gain) for end, gain in zip(ends, gains, strict=True)]
     for k, end in enumerate(ends):
@@ -114,7 +115,7 @@ def test_a_person_who_walked_away_is_gone_within_a_second_however_long_he_stood(
     with_person[-8:], with_person[:8] = 1.0, 1.0  # a leg 1 m ahead of the lidar
     for k in range(50):
         mapper.update(LaserScan(stamp=0.2 * k, ranges=with_person), still(0.2 * k))
-    row, column = mapper.grid.world_to_cell([0.968, 0.0])
+    row, column = mapper.grid.world_to_cell([0.972, 0.0])
     assert mapper.grid.states()[row, column] == OCCUPIED
     for k in range(50, 55):
         mapper.update(LaserScan(stamp=0.2 * k, ranges=room), still(0.2 * k))
@@ -130,7 +131,7 @@ def test_a_person_who_comes_is_on_the_map_within_a_second() -> None:
     room[0] = 0.8
     for k in range(50, 55):
         mapper.update(LaserScan(stamp=0.2 * k, ranges=room), still(0.2 * k))
-    assert mapper.grid.states()[tuple(mapper.grid.world_to_cell([0.768, 0.0]))] == OCCUPIED
+    assert mapper.grid.states()[tuple(mapper.grid.world_to_cell([0.772, 0.0]))] == OCCUPIED
 
 
 def test_a_scan_taken_while_spinning_draws_straight_walls() -> None:
