@@ -50,7 +50,8 @@ def _gaps(poses: NDArray[np.float64], solid: Solid, outline: SafetyConfig) -> ND
         return np.maximum(_to_outline(centers, outline)[:, 0] - solid.radius, 0.0)
     corners_of_solid = _to_outline(_in_base(poses, solid.vertices), outline).min(axis=1)
     corners_of_robot = _to_prism(_corners(poses, outline), solid).min(axis=1)
-    return np.minimum(corners_of_solid, corners_of_robot)
+    gaps: NDArray[np.float64] = np.minimum(corners_of_solid, corners_of_robot)
+    return gaps
 
 
 def _in_base(poses: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -16,14 +16,7 @@ from mapping.messages import LaserScan, Twist
 from nav.costmap import Costmap, CostmapConfig
 from nav.decision import DecisionConfig, choose
 from nav.former_walls import FormerWalls, FormerWallsConfig
-from nav.frontier import (
-    Frontier,
-    FrontierConfig,
-    Viewpoint,
-    find_frontiers,
-    find_viewpoints,
-    gain_at,
-)
+from nav.frontier import Frontier, FrontierConfig, find_frontiers
 from nav.given_up import GivenUp
 from nav.headway import Headway
 from nav.navigator import COMPLETE, RUNNING, STUCK, UNREACHABLE_START, DroppedFrontier, Plan
@@ -32,6 +25,8 @@ from nav.planner import CostField
 from nav.recovery import Recovery, RecoveryConfig
 from nav.safety import Safety, SafetyConfig
 from nav.scan_points import ScanPoints
+from nav.viewpoint import Viewpoint, ViewpointConfig, ViewpointFinder, gain_at
+from nav.visited_places import VisitedPlaces, VisitedPlacesConfig
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -40,7 +35,9 @@ class ExplorerConfig:
 
     costmap: CostmapConfig = CostmapConfig()
     frontier: FrontierConfig = FrontierConfig()
+    viewpoint: ViewpointConfig = ViewpointConfig()
     former_walls: FormerWallsConfig = FormerWallsConfig()
+    visited_places: VisitedPlacesConfig = VisitedPlacesConfig()
     decision: DecisionConfig = DecisionConfig()
     follower: FollowerConfig = FollowerConfig()
     safety: SafetyConfig = SafetyConfig()
@@ -51,12 +48,12 @@ class ExplorerConfig:
     """Longest time between two decisions while driving [s]."""
     glance_every: float = 1.0
     """How often the goal's worth is looked at while driving [s]."""
+    phantom_share: float = 0.6
+    """Share of the promised gain that, still promised on arrival, makes the promise a phantom."""
     worth_left: float = 0.35
     """Share of the promised gain below which a goal is left for a better one."""
     changed_reach: float = 4.2
     """How far from the robot the map may have changed since the last look [m]."""
-    near_rings: tuple[float, ...] = (5.0, 15.0, float("inf"))
-    """Costs up to which viewpoints are looked for, in turn, until one is found [m]."""
     arrived: float = 0.12
     """Distance to a viewpoint at which it is reached [m]."""
     home_tolerance: float = 0.08
@@ -93,6 +90,8 @@ class FrontierExplorer:
         self._scan_points = ScanPoints()
         self._headway = Headway()
         self._given_up = GivenUp()
+        self._finder = ViewpointFinder(self.config.viewpoint)
+        self._visited = VisitedPlaces(self.config.visited_places)
         self._former_walls = FormerWalls(self.config.former_walls)
         self._task = Task.EXPLORE
         self._home: Pose | None = None
@@ -120,6 +119,8 @@ class FrontierExplorer:
         new_scan = self._scan_points.update(
             scan, pose_map, self._period, self.config.obstacle_reach
         )
+        if new_scan:
+            self._visited.note(self._costmap, pose_map[:2])
         self._elapsed += self._period
         if self.status != RUNNING or self._elapsed < self.config.first_look:
             return self._move(Twist(), pose_map, grid)
@@ -167,13 +168,14 @@ class FrontierExplorer:
         return True
 
     def _judge_arrival(self, grid: OccupancyGrid, pose: Pose) -> None:
-        """Give the frontier up if its viewpoint shows nothing of what it promised."""
+        """Take note if the viewpoint shows nothing of what it promised."""
         target = self._target
         if target is None:
             return
         self._look(grid, pose)
-        if gain_at(self._costmap, target.place, self.config.frontier) > 0.8 * target.gain:
-            self._given_up.give_up(target.frontier, "its viewpoint showed nothing new")
+        left = gain_at(self._costmap, target.place, self.config.viewpoint)
+        if left > self.config.phantom_share * target.gain:
+            self._given_up.disappoint(target.frontier, "its viewpoints showed nothing new")
         self._recoveries = 0
 
     def _is_due(self, grid: OccupancyGrid, pose: Pose) -> bool:
@@ -187,7 +189,7 @@ class FrontierExplorer:
             return False
         self._glanced_at = now
         self._costmap.glance(grid, pose[:2], self.config.changed_reach)
-        left = gain_at(self._costmap, self._target.place, self.config.frontier)
+        left = gain_at(self._costmap, self._target.place, self.config.viewpoint)
         return left < self.config.worth_left * self._target.gain
 
     def _look(self, grid: OccupancyGrid, pose: Pose) -> None:
@@ -222,24 +224,23 @@ class FrontierExplorer:
         self._go_home(pose)
 
     def _best_viewpoint(self, pose: Pose) -> tuple[Viewpoint | None, CostField]:
-        """The best viewpoint among the nearest ring that has any, and the cost field it is from."""
+        """Where to go next, and the cost field from here."""
         config = self.config
         self._frontiers = find_frontiers(self._costmap, config.frontier, self._former_walls)
         open_ones = [item for item in self._frontiers if not self._given_up.holds(item)]
-        for ring in config.near_rings:
-            field = CostField.around(self._costmap, pose[:2], max_cost=ring)
-            viewpoints = find_viewpoints(field, open_ones, config.frontier)
-            best = choose(viewpoints, pose, self._target, config.decision)
-            if best is not None:
-                return best, field
-        self._note_unreachable(open_ones)
-        return None, field
+        field = CostField.around(self._costmap, pose[:2])
+        visited = self._visited.on(self._costmap)
+        viewpoints = self._finder.find(field, open_ones, visited, pose[:2])
+        best = choose(viewpoints, field, pose, self._target, config.decision)
+        if best is None:
+            self._note_unreachable(open_ones)
+        return best, field
 
     def _note_unreachable(self, frontiers: list[Frontier]) -> None:
         """Record every frontier that would be worth seeing but that no known place sees."""
         for frontier in frontiers:
-            gain = gain_at(self._costmap, frontier.middle, self.config.frontier)
-            if gain >= self.config.frontier.min_gain:
+            gain = gain_at(self._costmap, frontier.middle, self.config.viewpoint)
+            if gain >= self.config.viewpoint.min_gain:
                 self._given_up.give_up(frontier, "no known way to a place that sees it")
 
     def _is_shut_in(self, field: CostField) -> bool:

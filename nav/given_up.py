@@ -16,7 +16,7 @@ SAME_PLACE = 0.35
 class _Record:
     frontier: Frontier
     reason: str
-    times: int = 1
+    times: float = 0.0
 
 
 class GivenUp:
@@ -28,11 +28,11 @@ class GivenUp:
 
     def give_up(self, frontier: Frontier, reason: str) -> None:
         """Leave a frontier alone, for now or, after its second chance, for good."""
-        record = self._find(frontier)
-        if record is None:
-            self._records.append(_Record(frontier, reason))
-        else:
-            record.times, record.reason = record.times + 1, reason
+        self._add(frontier, reason, 1.0)
+
+    def disappoint(self, frontier: Frontier, reason: str) -> None:
+        """Note that a viewpoint of it was of no use; the second such leads to giving up."""
+        self._add(frontier, reason, 0.5)
 
     def holds(self, frontier: Frontier) -> bool:
         """Whether a frontier is to be left alone now."""
@@ -57,8 +57,15 @@ class GivenUp:
                 reason=record.reason,
             )
             for frontier, record in found
-            if record is not None
+            if record is not None and record.times >= 1.0
         )
+
+    def _add(self, frontier: Frontier, reason: str, times: float) -> None:
+        record = self._find(frontier)
+        if record is None:
+            record = _Record(frontier, reason)
+            self._records.append(record)
+        record.times, record.reason = record.times + times, reason
 
     def _find(self, frontier: Frontier) -> _Record | None:
         for record in self._records:

@@ -6,7 +6,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from nav.costmap import Costmap
-from nav.planner_kernels import descend, shorten, spread_cost
+from nav.planner_kernels import (
+    costs_along_tree,
+    descend,
+    shortcut_in_sight,
+    shorten,
+    spread_cost,
+)
 
 ESCAPE_COST = 20.0
 """Cost per metre of leaving a place too close to things; dear, so that it is left at once."""
@@ -64,6 +70,18 @@ class CostField:
         if 0 <= row < rows and 0 <= column < columns:
             return float(self.cost_to_come[row, column])
         return float(np.inf)
+
+    def costs_between(self, points: ArrayLike) -> NDArray[np.float64]:
+        """Cost of the way between reachable points ``(n, 2)``, as ``(n, n)``; never too low.
+
+        By way of this field's own tree, or straight where that is open: exact enough to put places
+        in order, and a thousand times cheaper than a search from each.
+        """
+        cells = self.costmap.world_to_cell(points)
+        costs = costs_along_tree(self.parents, self.cost_to_come, cells)
+        shortcut_in_sight(cells, self.costmap.cost, self.costmap.resolution, costs)
+        between: NDArray[np.float64] = costs
+        return between
 
     def path_to(self, point: ArrayLike) -> NDArray[np.float64]:
         """The cheapest path ``(n, 2)`` from the start to the point, both included, pulled taut.

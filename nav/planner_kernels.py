@@ -111,3 +111,56 @@ def line_cost(a: NDArray[np.int64], b: NDArray[np.int64], cost: NDArray[np.float
         row, column = int(np.floor(a[0] + t * dy + 0.5)), int(np.floor(a[1] + t * dx + 0.5))
         total += min(float(cost[row, column]), FORBIDDEN_COST)
     return float(total * length / steps)
+
+
+@njit(cache=True)
+def costs_along_tree(
+    parents: NDArray[np.int32], cost_to_come: NDArray[np.float32], cells: NDArray[np.int64]
+) -> NDArray[np.float64]:
+    """Cost between cells ``(n, n)`` by way of the tree that a search has grown.
+
+    Two cells are joined at their last common ancestor, so this is never less than the cheapest way
+    and is it wherever the way forks only once, as between rooms on a corridor.
+    """
+    count = len(cells)
+    columns = parents.shape[1]
+    costs = np.zeros((count, count))
+    on_way = np.zeros(parents.size, dtype=np.bool_)
+    for a in range(count):
+        _mark_way(parents, cells[a, 0] * columns + cells[a, 1], on_way, True)
+        for b in range(count):
+            index = cells[b, 0] * columns + cells[b, 1]
+            while not on_way[index]:
+                index = parents[index // columns, index % columns]
+            shared = cost_to_come[index // columns, index % columns]
+            to_a = cost_to_come[cells[a, 0], cells[a, 1]]
+            to_b = cost_to_come[cells[b, 0], cells[b, 1]]
+            costs[a, b] = to_a + to_b - 2.0 * shared
+        _mark_way(parents, cells[a, 0] * columns + cells[a, 1], on_way, False)
+    return costs
+
+
+@njit(cache=True)
+def _mark_way(
+    parents: NDArray[np.int32], index: int, on_way: NDArray[np.bool_], value: bool
+) -> None:
+    """Set a mark on every cell from one back to the start of the search."""
+    columns = parents.shape[1]
+    while index >= 0:
+        on_way[index] = value
+        index = parents[index // columns, index % columns]
+
+
+@njit(cache=True)
+def shortcut_in_sight(
+    cells: NDArray[np.int64],
+    cost: NDArray[np.float32],
+    resolution: float,
+    costs: NDArray[np.float64],
+) -> None:
+    """Lower the cost between two cells to that of the straight line where it is open, in place."""
+    for a in range(len(cells)):
+        for b in range(a):
+            straight = resolution * line_cost(cells[a], cells[b], cost)
+            if straight < costs[a, b]:
+                costs[a, b] = costs[b, a] = straight

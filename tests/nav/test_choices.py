@@ -7,11 +7,12 @@ from mapping.errors import TestbedError
 from mapping.grid import OccupancyGrid
 from mapping.messages import LaserScan
 from nav.decision import DecisionConfig, choose
-from nav.frontier import Frontier, Viewpoint
+from nav.frontier import Frontier
 from nav.given_up import GivenUp
 from nav.headway import Headway, HeadwayConfig
 from nav.navigators import make_navigator
 from nav.reactive import Reactive
+from nav.viewpoint import Viewpoint
 from nav.recovery import Recovery, open_heading
 
 

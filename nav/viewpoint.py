@@ -1,0 +1,178 @@
+"""Turns frontiers into viewpoints worth driving to.
+
+A frontier's centroid often lies in unknown or occupied cells, so the robot is never sent there: it
+is sent to a reachable place from which the frontier can be seen, and what such a place is worth is
+what the lidar would newly see from it, by ray casting (Gonzalez-Banos and Latombe 2002).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mapping.burger import LIDAR_RANGE_MAX
+from mapping.errors import TestbedError
+from mapping.grid import FREE
+from nav.costmap import Costmap
+from nav.frontier import Frontier
+from nav.planner import CostField
+from nav.viewpoint_kernels import cheapest_view, expected_gain
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ViewpointConfig:
+    """Where viewpoints are looked for, and what makes them worth the way."""
+
+    min_gain: float = 0.03
+    """A viewpoint that would newly show less than this is not worth going to [m2]."""
+    min_share_per_metre: float = 0.0006
+    """Nor is one that would show less than this share of the known floor more for every metre of
+    the way [1/m]: 10 m of way for 0.6 % of the map."""
+    view_distances: tuple[float, ...] = (0.5, 1.0)
+    """How far from a frontier its viewpoints may lie [m]."""
+    view_clearance: float = 0.14
+    """Least clearance of a viewpoint [m]: enough to turn on the spot."""
+    gain_range: float = LIDAR_RANGE_MAX - 0.5
+    """How far the lidar is counted on to see [m]; less than its limit, where beams are sparse."""
+    gain_depth: float = 1.5
+    """How far a beam is counted on to see into the unknown [m]: something may stand there."""
+    gain_beams: int = 240
+    """Beams cast to estimate what a viewpoint would show."""
+    keep_beyond: float = 6.0
+    """The viewpoints of a frontier this far from the robot are kept from the last time [m]."""
+
+    def __post_init__(self) -> None:
+        """Refuse figures that find nothing."""
+        if self.gain_beams < 1 or not self.view_distances:
+            raise TestbedError("viewpoint: gain_beams and view_distances must not be empty")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Viewpoint:
+    """A reachable place and what it would show."""
+
+    place: NDArray[np.float64]
+    """Where to stand, ``(2,)`` as (x, y) [m]."""
+    frontier: Frontier
+    gain: float
+    """Area the lidar is expected to newly see from there [m2]."""
+    cost: float
+    """Cost of the way there [m, dearer near things]."""
+
+
+KEY_RESOLUTION = 0.01
+"""Middles of frontiers are told apart to this [m]; planning cells are never finer."""
+
+_Places = list[tuple[NDArray[np.float64], float]]
+
+
+class ViewpointFinder:
+    """Finds viewpoints; keeps those of far frontiers, around which nothing can have changed."""
+
+    def __init__(self, config: ViewpointConfig | None = None) -> None:
+        self.config = config or ViewpointConfig()
+        self._kept: dict[tuple[int, int, int], _Places] = {}
+
+    def find(
+        self,
+        field: CostField,
+        frontiers: Sequence[Frontier],
+        visited: NDArray[np.bool_],
+        robot: NDArray[np.float64],
+    ) -> list[Viewpoint]:
+        """For each frontier and view distance the cheapest place that sees it, if worth the way.
+
+        Frontiers that no known place sees, or whose places would show too little, yield none.
+
+        Args:
+            field: What it costs to come to each place.
+            frontiers: What is to be seen.
+            visited: Cells ``[row, col]`` that show nothing new: the robot has looked from there.
+            robot: Where the robot is ``(2,)`` [m].
+        """
+        kept, self._kept = self._kept, {}
+        viewpoints = []
+        floor = float(np.count_nonzero(field.costmap.states == FREE)) * field.costmap.resolution**2
+        per_metre = self.config.min_share_per_metre * floor
+        for frontier in frontiers:
+            key = self._key(frontier)
+            is_far = np.hypot(*(frontier.middle - robot)) > self.config.keep_beyond
+            places = kept.get(key) if is_far else None
+            self._kept[key] = places = (
+                self._places(field, frontier, visited) if places is None else places
+            )
+            viewpoints += self._worthwhile(field, frontier, places, per_metre)
+        return viewpoints
+
+    def _key(self, frontier: Frontier) -> tuple[int, int, int]:
+        """Tells a frontier from others and from itself grown; holds when the map grows."""
+        x, y = np.round(frontier.middle / KEY_RESOLUTION).astype(int).tolist()
+        return x, y, len(frontier.cells)
+
+    def _places(self, field: CostField, frontier: Frontier, visited: NDArray[np.bool_]) -> _Places:
+        """Places that see a frontier, and what each would show [m2]."""
+        cells = {
+            _view_cell(field, frontier, visited, distance, self.config)
+            for distance in self.config.view_distances
+        }
+        return [
+            (field.costmap.cell_to_world(cell), _gain(field.costmap, cell, self.config))
+            for cell in sorted(cells)
+            if cell[0] >= 0
+        ]
+
+    def _worthwhile(
+        self, field: CostField, frontier: Frontier, places: _Places, per_metre: float
+    ) -> list[Viewpoint]:
+        """The places whose gain pays for their way, at ``per_metre`` [m2/m]."""
+        viewpoints = []
+        for place, gain in places:
+            cost = field.cost_at(place)
+            if gain >= self.config.min_gain + per_metre * cost:
+                viewpoints.append(Viewpoint(place=place, frontier=frontier, gain=gain, cost=cost))
+        return viewpoints
+
+
+def gain_at(costmap: Costmap, place: NDArray[np.float64], config: ViewpointConfig) -> float:
+    """Area [m2] that the lidar is expected to newly see from a place (x, y); 0 outside the map."""
+    row, column = (int(index) for index in costmap.world_to_cell(place))
+    rows, columns = costmap.states.shape
+    if not (0 <= row < rows and 0 <= column < columns):
+        return 0.0
+    return _gain(costmap, (row, column), config)
+
+
+def _view_cell(
+    field: CostField,
+    frontier: Frontier,
+    visited: NDArray[np.bool_],
+    distance: float,
+    config: ViewpointConfig,
+) -> tuple[int, int]:
+    """The cheapest cell that sees a frontier from within a distance; (-1, -1) if there is none."""
+    costmap = field.costmap
+    middle = costmap.world_to_cell(frontier.middle)
+    row, column = cheapest_view(
+        field.cost_to_come,
+        costmap.states,
+        costmap.clearance,
+        visited,
+        int(middle[0]),
+        int(middle[1]),
+        distance / costmap.resolution,
+        np.float32(config.view_clearance),
+    )
+    return int(row), int(column)
+
+
+def _gain(costmap: Costmap, cell: tuple[int, int], config: ViewpointConfig) -> float:
+    cells = expected_gain(
+        costmap.states,
+        cell[0],
+        cell[1],
+        config.gain_range / costmap.resolution,
+        config.gain_depth / costmap.resolution,
+        config.gain_beams,
+    )
+    return float(cells * costmap.resolution**2)
