@@ -4,35 +4,38 @@ import numpy as np
 from numpy.typing import NDArray
 
 from envs.solids import Disc, Prism, Solid
-from nav.safety import SafetyConfig
+from nav.outline import BURGER_OUTLINE, Rectangle
 
 LOOK_WITHIN = 0.5
 """Gaps wider than this are not measured: they are of no interest [m]."""
 
 
 def min_clearance(
-    poses_world: NDArray[np.float64], solids: tuple[Solid, ...], outline: SafetyConfig
+    poses_world: NDArray[np.float64],
+    solids: tuple[Solid, ...],
+    outline: tuple[Rectangle, ...] = BURGER_OUTLINE,
 ) -> float | None:
     """The least distance [m] between the robot's outline and any solid, over all poses.
 
-    Exact for convex outlines that do not overlap; 0 when they do.
+    Exact while nothing overlaps; 0 when a corner of one lies in the other.
 
     Args:
         poses_world: True poses of base_footprint ``(n, 3)``.
         solids: What stands on the floor.
-        outline: Front, back and side of the robot.
+        outline: The rectangles that the robot consists of.
 
     Returns:
         None when nothing was ever nearer than 0.5 m, or there are no poses.
     """
     least = LOOK_WITHIN
-    reach = LOOK_WITHIN + float(np.hypot(outline.back, outline.side))
+    reach = LOOK_WITHIN + max(np.hypot(max(front, back), side) for front, back, side in outline)
     for solid in solids:
         middle, radius = _bounding_circle(solid)
         gaps = np.hypot(*(poses_world[:, :2] - middle).T) - radius
         near = poses_world[gaps < min(reach, least + reach - LOOK_WITHIN)]
         if len(near):
-            least = min(least, float(_gaps(near, solid, outline).min()))
+            gaps = [_gaps(near, solid, rectangle).min() for rectangle in outline]
+            least = min(least, float(min(gaps)))
     return least if least < LOOK_WITHIN else None
 
 
@@ -43,13 +46,13 @@ def _bounding_circle(solid: Solid) -> tuple[NDArray[np.float64], float]:
     return middle, float(np.hypot(*(solid.vertices - middle).T).max())
 
 
-def _gaps(poses: NDArray[np.float64], solid: Solid, outline: SafetyConfig) -> NDArray[np.float64]:
-    """Distance ``(n,)`` from the outline at each pose to one solid."""
+def _gaps(poses: NDArray[np.float64], solid: Solid, rectangle: Rectangle) -> NDArray[np.float64]:
+    """Distance ``(n,)`` from a rectangle of the robot at each pose to one solid."""
     if isinstance(solid, Disc):
         centers = _in_base(poses, solid.center[None])
-        return np.maximum(_to_outline(centers, outline)[:, 0] - solid.radius, 0.0)
-    corners_of_solid = _to_outline(_in_base(poses, solid.vertices), outline).min(axis=1)
-    corners_of_robot = _to_prism(_corners(poses, outline), solid).min(axis=1)
+        return np.maximum(_to_rectangle(centers, rectangle)[:, 0] - solid.radius, 0.0)
+    corners_of_solid = _to_rectangle(_in_base(poses, solid.vertices), rectangle).min(axis=1)
+    corners_of_robot = _to_prism(_corners(poses, rectangle), solid).min(axis=1)
     gaps: NDArray[np.float64] = np.minimum(corners_of_solid, corners_of_robot)
     return gaps
 
@@ -67,20 +70,20 @@ def _in_base(poses: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray
     )
 
 
-def _to_outline(points: NDArray[np.float64], outline: SafetyConfig) -> NDArray[np.float64]:
-    """Distance ``(n, k)`` of points ``(n, k, 2)`` in the base frame to the robot's outline."""
+def _to_rectangle(points: NDArray[np.float64], rectangle: Rectangle) -> NDArray[np.float64]:
+    """Distance ``(n, k)`` of points ``(n, k, 2)`` in the base frame to a rectangle of it."""
+    front, back, side = rectangle
     x, y = points[..., 0], points[..., 1]
-    beyond_x = np.maximum(np.maximum(x - outline.front, -outline.back - x), 0.0)
-    beyond_y = np.maximum(np.abs(y) - outline.side, 0.0)
+    beyond_x = np.maximum(np.maximum(x - front, -back - x), 0.0)
+    beyond_y = np.maximum(np.abs(y) - side, 0.0)
     distances: NDArray[np.float64] = np.hypot(beyond_x, beyond_y)
     return distances
 
 
-def _corners(poses: NDArray[np.float64], outline: SafetyConfig) -> NDArray[np.float64]:
-    """The outline's corners in the world ``(n, 4, 2)``."""
-    base = np.array(
-        [(x, y) for x in (outline.front, -outline.back) for y in (outline.side, -outline.side)]
-    )
+def _corners(poses: NDArray[np.float64], rectangle: Rectangle) -> NDArray[np.float64]:
+    """A rectangle's corners in the world ``(n, 4, 2)``."""
+    front, back, side = rectangle
+    base = np.array([(x, y) for x in (front, -back) for y in (side, -side)])
     cos, sin = np.cos(poses[:, 2])[:, None], np.sin(poses[:, 2])[:, None]
     return np.stack(
         (

@@ -12,7 +12,6 @@ from evaluation.clearance import min_clearance
 from evaluation.episode import Episode
 from mapping.compare import score_map
 from mapping.geometry import wrap_to_pi
-from nav.safety import SafetyConfig
 
 TIMING_KEYS = (
     "wall_time_s",
@@ -46,7 +45,7 @@ def result_of(episode: Episode, map_file_kb: float | None) -> dict[str, Any]:
         **_times_of_coverage(episode),
         "path_length_m": _path_length(poses_world),
         "contacts": episode.contacts,
-        "min_clearance_m": min_clearance(poses_world, episode.plan.solids(), SafetyConfig()),
+        "min_clearance_m": min_clearance(poses_world, episode.plan.solids()),
         **_map_scores(episode),
         **_trajectory_scores(np.array(track.pose_map), poses_world),
         "map_updates": episode.map_updates,

@@ -27,7 +27,7 @@ class CostmapConfig:
     """The robot's centre never comes closer than this to an occupied cell [m]."""
     inflation: float = 0.35
     """Clearance from which a cell costs no more than its length [m]."""
-    closeness_cost: float = 4.0
+    closeness_cost: float = 6.0
     """How many times its length more a step costs at the lethal clearance."""
 
     def __post_init__(self) -> None:

@@ -275,7 +275,7 @@ class FrontierExplorer:
         if self._target is not None and self._recoveries > self.config.recoveries_per_goal:
             self._given_up.give_up(self._target.frontier, "no headway on the way there")
             self._target = None
-        self._recovery.begin(pose)
+        self._recovery.begin(pose, in_a_row=self._recoveries)
 
     def _forget_goal(self) -> None:
         self._goal, self._target = None, None

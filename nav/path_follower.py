@@ -15,6 +15,7 @@ from mapping.geometry import Pose
 from mapping.messages import Twist
 from nav.motion_limits import MotionLimits
 from nav.path_kernels import advance, point_ahead
+from nav.spot_turn import SpotTurn
 
 SHORTEST_LOOKAHEAD = 1e-3
 """A point nearer than this gives no curvature worth dividing by [m]."""
@@ -39,10 +40,10 @@ class FollowerConfig:
     """Heading error from which the robot stops and turns [rad]."""
     drive_again_below: float = 0.35
     """Heading error at which it drives again [rad]."""
-    unwind_above: float = 2.2
+    unwind_above: float = 1.7
     """Heading error from which the robot may turn the long way round, if that undoes earlier turns
     [rad]: the error of the wheel base grows with the turns that are left standing."""
-    wound_up_above: float = 3.5
+    wound_up_above: float = 1.6
     """Turns left standing from which it does so [rad]."""
     turn_gain: float = 2.5
     """Turn rate per heading error when turning on the spot [1/s]."""
@@ -61,7 +62,7 @@ class PathFollower:
         self._path: NDArray[np.float64] = np.zeros((0, 2))
         self._along: NDArray[np.float64] = np.zeros(0)
         self._progress = 0
-        self._turn = 0.0
+        self._turn = SpotTurn()
         self._wound = 0.0
         self._yaw: float | None = None
 
@@ -94,28 +95,31 @@ class PathFollower:
         x, y = point_ahead(self._path, self._along, self._progress, lookahead)
         ahead_x, ahead_y = x - float(pose[0]), y - float(pose[1])
         error = math.remainder(math.atan2(ahead_y, ahead_x) - float(pose[2]), 2.0 * math.pi)
-        self._turn = self._turn_direction(error, float(pose[2]))
+        direction = self._turn_direction(error, float(pose[2]))
         wanted = (
-            Twist(angular_z=self._turn * config.turn_gain * abs(error))
-            if self._turn
+            Twist(angular_z=direction * config.turn_gain * abs(error))
+            if direction
             else self._arc(error, math.hypot(ahead_x, ahead_y), left, openness)
         )
         return config.limits.approach(wanted, self.last)
 
     def _turn_direction(self, error: float, yaw: float) -> float:
-        """Which way to turn on the spot, +1 or -1, or 0 to drive; kept until the turn is done."""
+        """Which way to turn on the spot, +1 or -1, or 0 to drive."""
         if self._yaw is not None:
             self._wound += math.remainder(yaw - self._yaw, 2.0 * math.pi)
         self._yaw = yaw
         config = self.config
-        threshold = config.drive_again_below if self._turn else config.turn_on_spot_above
-        if abs(error) < threshold:
-            return 0.0
-        if self._turn:
-            return self._turn
-        short_way = math.copysign(1.0, error)
-        winds_up = self._wound * short_way > config.wound_up_above
-        return -short_way if winds_up and abs(error) > config.unwind_above else short_way
+        turn = self._turn
+        if abs(error) < (config.drive_again_below if turn.direction else config.turn_on_spot_above):
+            turn.end()
+        elif turn.direction:
+            turn.update(yaw, config.limits.period)
+        else:
+            short_way = math.copysign(1.0, error)
+            winds_up = self._wound * short_way > config.wound_up_above
+            unwinds = winds_up and abs(error) > config.unwind_above
+            turn.begin(-short_way if unwinds else short_way, yaw)
+        return turn.direction
 
     def _arc(self, error: float, distance: float, left: float, openness: float) -> Twist:
         """The arc to the point ahead, as fast as it, the clearance and the way left allow."""

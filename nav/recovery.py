@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from mapping.geometry import Pose, wrap_to_pi
 from mapping.messages import Twist
+from nav.spot_turn import SpotTurn
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -16,13 +17,15 @@ class RecoveryConfig:
     back_off_speed: float = 0.06
     """[m/s]."""
     back_off_distance: float = 0.10
+    """Of a first recovery [m]; each further one in a row doubles it."""
+    longest_back_off: float = 0.8
     """[m]."""
     turn_speed: float = 0.8
     """[rad/s]."""
     facing: float = 0.3
     """Heading error at which the open side counts as faced [rad]."""
     time_limit: float = 6.0
-    """A recovery ends after this long whatever came of it [s]."""
+    """A recovery ends this long after backing off whatever came of it [s]."""
     view: float = 1.0
     """Obstacles farther than this do not count when looking for the open side [m]."""
 
@@ -35,15 +38,20 @@ class Recovery:
         self._start: Pose | None = None
         self._elapsed = 0.0
         self._heading: float | None = None
+        self._distance = self.config.back_off_distance
+        self._turn = SpotTurn()
 
     @property
     def active(self) -> bool:
         """Whether a recovery is going on."""
         return self._start is not None
 
-    def begin(self, pose: Pose) -> None:
-        """Start backing off from here."""
+    def begin(self, pose: Pose, in_a_row: int = 1) -> None:
+        """Start backing off from here; the more recoveries in a row, the farther."""
+        config = self.config
         self._start, self._elapsed, self._heading = pose.copy(), 0.0, None
+        farther = config.back_off_distance * 2.0 ** (in_a_row - 1)
+        self._distance = min(farther, config.longest_back_off)
 
     def command(self, pose: Pose, points: NDArray[np.float64], period: float) -> Twist | None:
         """The twist for the next period, or None when the recovery is over.
@@ -57,20 +65,21 @@ class Recovery:
         if self._start is None:
             return None
         self._elapsed += period
-        if self._elapsed > config.time_limit:
+        backing_time = 1.5 * self._distance / config.back_off_speed
+        if self._elapsed > config.time_limit + backing_time:
             self._start = None
             return None
         backed = float(np.hypot(*(pose[:2] - self._start[:2])))
-        slow = self._elapsed > 2.0 * config.back_off_distance / config.back_off_speed
-        if self._heading is None and backed < config.back_off_distance and not slow:
+        if self._heading is None and backed < self._distance and self._elapsed < backing_time:
             return Twist(linear_x=-config.back_off_speed)
         if self._heading is None:
             self._heading = open_heading(pose, points, config.view)
-        error = float(wrap_to_pi(self._heading - pose[2]))
-        if abs(error) < config.facing:
+            error = float(wrap_to_pi(self._heading - pose[2]))
+            self._turn.begin(float(np.copysign(1.0, error)), float(pose[2]))
+        if abs(float(wrap_to_pi(self._heading - pose[2]))) < config.facing:
             self._start = None
             return None
-        return Twist(angular_z=float(np.copysign(config.turn_speed, error)))
+        return Twist(angular_z=config.turn_speed * self._turn.update(float(pose[2]), period))
 
 
 def open_heading(pose: Pose, points: NDArray[np.float64], view: float, sectors: int = 24) -> float:

@@ -13,6 +13,7 @@ from mapping.burger import LIDAR_POSE_BASE, LIDAR_RANGE_MIN
 from mapping.geometry import Pose
 from mapping.grid import OccupancyGrid
 from mapping.messages import Twist
+from nav.outline import BURGER_OUTLINE, Rectangle
 from nav.safety_kernels import clear_share
 
 
@@ -20,12 +21,8 @@ from nav.safety_kernels import clear_share
 class SafetyConfig:
     """The robot's outline and how far ahead it is moved along a twist."""
 
-    front: float = 0.038
-    """The collision box's front edge ahead of the axle [m] (turtlebot3_burger.urdf@da785b7)."""
-    back: float = 0.102
-    """Its back edge behind the axle [m]."""
-    side: float = 0.089
-    """The wheels' outer faces from the centre line [m]."""
+    outline: tuple[Rectangle, Rectangle] = BURGER_OUTLINE
+    """The robot's outline."""
     margin: float = 0.02
     """Distance kept from everything [m]: six times the lidar's noise close by."""
     horizon: float = 0.6
@@ -61,7 +58,7 @@ class Safety:
             pose,
             twist.linear_x,
             twist.angular_z,
-            (config.front, config.back, config.side),
+            config.outline,
             config.margin,
             config.horizon,
             config.steps,

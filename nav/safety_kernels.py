@@ -4,6 +4,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from nav.outline import Rectangle
+
 SHARES = (1.0, 0.75, 0.5, 0.25)
 """Shares of a twist that are tried, in turn."""
 ROUNDING = 1e-4
@@ -16,7 +18,7 @@ def clear_share(
     pose: NDArray[np.float64],
     linear: float,
     angular: float,
-    outline: tuple[float, float, float],
+    outline: tuple[Rectangle, Rectangle],
     margin: float,
     horizon: float,
     steps: int,
@@ -35,7 +37,7 @@ def clear_share(
         pose: Of base_footprint in the map frame ``(3,)``.
         linear: Forward speed of the twist [m/s].
         angular: Turn rate of the twist [rad/s].
-        outline: Front, back and side of the robot [m].
+        outline: The rectangles that the robot consists of.
         margin: Distance to keep [m].
         horizon: How long the twist is followed [s].
         steps: Poses looked at along the way.
@@ -62,7 +64,7 @@ def _keeps(
     pose: NDArray[np.float64],
     linear: float,
     angular: float,
-    outline: tuple[float, float, float],
+    outline: tuple[Rectangle, Rectangle],
     allowed: float,
     horizon: float,
     steps: int,
@@ -115,7 +117,7 @@ def _around(
     points: NDArray[np.float64],
     pose: NDArray[np.float64],
     view: float,
-    outline: tuple[float, float, float],
+    outline: tuple[Rectangle, Rectangle],
 ) -> NDArray[np.float64]:
     """The points nearer than ``view`` that do not lie inside the robot."""
     keep = np.zeros(len(points), dtype=np.bool_)
@@ -132,16 +134,16 @@ def outline_distance(
     x: float,
     y: float,
     yaw: float,
-    outline: tuple[float, float, float],
+    outline: tuple[Rectangle, Rectangle],
 ) -> float:
-    """Distance [m] from the robot's outline (front, back, side) to the nearest point; 0 inside."""
-    front, back, side = outline
+    """Distance [m] from the robot's outline to the nearest point; 0 inside, inf without points."""
     cos, sin = np.cos(yaw), np.sin(yaw)
     nearest = np.inf
     for k in range(len(points)):
         dx, dy = points[k, 0] - x, points[k, 1] - y
         ahead, left = cos * dx + sin * dy, -sin * dx + cos * dy
-        out_x = max(ahead - front, -back - ahead, 0.0)
-        out_y = max(abs(left) - side, 0.0)
-        nearest = min(nearest, np.sqrt(out_x * out_x + out_y * out_y))
+        for front, back, side in outline:
+            out_x = max(ahead - front, -back - ahead, 0.0)
+            out_y = max(abs(left) - side, 0.0)
+            nearest = min(nearest, np.sqrt(out_x * out_x + out_y * out_y))
     return nearest

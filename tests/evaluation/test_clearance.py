@@ -6,12 +6,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely.affinity import rotate, translate
 from shapely.geometry import Point, Polygon, box
+from shapely.ops import unary_union
 
 from envs.solids import Disc, Prism
 from evaluation.clearance import min_clearance
-from nav.safety import SafetyConfig
+from nav.outline import BURGER_OUTLINE
 
-OUTLINE = SafetyConfig()
+OUTLINE = unary_union([box(-back, -side, front, side) for front, back, side in BURGER_OUTLINE])
 
 
 def convex_polygon(rng: np.random.Generator) -> np.ndarray:
@@ -27,10 +28,9 @@ def test_the_least_gap_equals_shapelys(seed: int) -> None:
     vertices = convex_polygon(rng)
     center, radius = rng.uniform(-0.6, 0.6, 2), rng.uniform(0.05, 0.2)
     poses = np.column_stack((rng.uniform(-0.3, 0.3, (4, 2)), rng.uniform(-3.0, 3.0, 4)))
-    outline = box(-OUTLINE.back, -OUTLINE.side, OUTLINE.front, OUTLINE.side)
     things = [Polygon(vertices), Point(center).buffer(radius, quad_segs=512)]
     expected = min(
-        translate(rotate(outline, yaw, (0, 0), True), x, y).distance(thing)
+        translate(rotate(OUTLINE, yaw, (0, 0), True), x, y).distance(thing)
         for x, y, yaw in poses
         for thing in things
     )
@@ -38,7 +38,7 @@ def test_the_least_gap_equals_shapelys(seed: int) -> None:
         Prism(vertices=vertices, height=1.0),
         Disc(center=center, radius=radius, height=1.0),
     )
-    least = min_clearance(poses, solids, OUTLINE)
+    least = min_clearance(poses, solids)
     overlapping_edges_only = expected == 0.0  # two outlines may cross with no corner inside
     if not overlapping_edges_only:
         assert least == pytest.approx(expected, abs=1e-5) if expected < 0.5 else least is None
@@ -46,10 +46,10 @@ def test_the_least_gap_equals_shapelys(seed: int) -> None:
 
 def test_far_from_everything_there_is_no_least_gap() -> None:
     far = (Disc(center=np.array([5.0, 5.0]), radius=0.2, height=1.0),)
-    assert min_clearance(np.zeros((3, 3)), far, OUTLINE) is None
-    assert min_clearance(np.zeros((3, 3)), (), OUTLINE) is None
+    assert min_clearance(np.zeros((3, 3)), far) is None
+    assert min_clearance(np.zeros((3, 3)), ()) is None
 
 
 def test_a_robot_inside_a_thing_has_no_clearance() -> None:
     around = (Disc(center=np.zeros(2), radius=0.5, height=1.0),)
-    assert min_clearance(np.zeros((1, 3)), around, OUTLINE) == 0.0
+    assert min_clearance(np.zeros((1, 3)), around) == 0.0

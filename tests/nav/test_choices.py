@@ -12,8 +12,8 @@ from nav.given_up import GivenUp
 from nav.headway import Headway, HeadwayConfig
 from nav.navigators import make_navigator
 from nav.reactive import Reactive
-from nav.viewpoint import Viewpoint
 from nav.recovery import Recovery, open_heading
+from nav.viewpoint import Viewpoint
 
 
 def frontier_at(x: float, y: float) -> Frontier:
@@ -29,18 +29,21 @@ def viewpoint_at(x: float, y: float, gain: float) -> Viewpoint:
 
 def test_of_two_equal_gains_the_nearer_is_chosen() -> None:
     near, far = viewpoint_at(1.0, 0.0, 1.0), viewpoint_at(3.0, 0.0, 1.0)
-    assert choose([far, near], np.zeros(3), None, DecisionConfig()) is near
+    assert choose([far, near], OPEN_FIELD, np.zeros(3), None, DecisionConfig()) is near
 
 
 def test_a_slightly_better_frontier_does_not_make_the_robot_turn_back() -> None:
     here, there = viewpoint_at(1.0, 0.0, 1.0), viewpoint_at(1.0, 1.0, 1.3)
     config = DecisionConfig()
-    assert choose([here, there], np.zeros(3), None, config) is there or config.loyalty > 1.0
-    assert choose([here, there], np.zeros(3), here, config) is here
+    assert (
+        choose([here, there], OPEN_FIELD, np.zeros(3), None, config) is there
+        or config.loyalty > 1.0
+    )
+    assert choose([here, there], OPEN_FIELD, np.zeros(3), here, config) is here
 
 
 def test_of_no_viewpoints_none_is_chosen() -> None:
-    assert choose([], np.zeros(3), None, DecisionConfig()) is None
+    assert choose([], OPEN_FIELD, np.zeros(3), None, DecisionConfig()) is None
 
 
 def test_a_frontier_given_up_gets_one_second_chance_and_keeps_its_last_reason() -> None:

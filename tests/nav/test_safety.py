@@ -7,13 +7,15 @@ from hypothesis import strategies as st
 from shapely import MultiPoint
 from shapely.affinity import rotate, translate
 from shapely.geometry import box
+from shapely.ops import unary_union
 
 from mapping.grid import OccupancyGrid
 from mapping.messages import Twist
+from nav.outline import BURGER_OUTLINE
 from nav.safety import Safety, SafetyConfig
 from nav.safety_kernels import outline_distance
 
-OUTLINE = (0.038, 0.102, 0.089)
+OUTLINE = BURGER_OUTLINE
 
 
 @given(
@@ -27,8 +29,8 @@ def test_the_distance_to_the_outline_equals_shapelys(
     seed: int, x: float, y: float, yaw: float
 ) -> None:
     points = np.random.default_rng(seed).uniform(-1.0, 1.0, (20, 2))
-    front, back, side = OUTLINE
-    outline = translate(rotate(box(-back, -side, front, side), yaw, (0, 0), True), x, y)
+    shape = unary_union([box(-back, -side, front, side) for front, back, side in OUTLINE])
+    outline = translate(rotate(shape, yaw, (0, 0), True), x, y)
     expected = outline.distance(MultiPoint(points))
     assert outline_distance(points, x, y, yaw, OUTLINE) == pytest.approx(expected, abs=1e-9)
 
