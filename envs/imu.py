@@ -30,10 +30,9 @@ class ImuConfig:
 
     gyro_sigma: float = 2e-4
     """White noise of a rate [rad/s] (turtlebot3_simulations@eb50ff8, model.sdf)."""
-    gyro_bias_sigma: float = GYRO_STEP / math.sqrt(12.0)
-    """Constant error of a rate [rad/s], drawn once an episode for each axis: 0.0003 rad/s, one
-    degree a minute. The firmware zeroes the gyroscope at start by the mean of 512 readings, but in
-    whole steps (OpenCR MPU9250.cpp@2bd5e0c); what is left is spread over one step."""
+    gyro_bias_sigma: float = 7.5e-6
+    """Constant error of a rate [rad/s], drawn once an episode for each axis: 1.5 degrees an hour,
+    what a calibration at rest leaves (turtlebot3_burger.gazebo.xacro, branch noetic: 7.5e-6)."""
     accel_sigma: float = 1.7e-2
     """White noise of an acceleration [m/s2] (turtlebot3_simulations@eb50ff8, model.sdf)."""
     accel_bias_sigma: float = 0.1
@@ -53,8 +52,11 @@ class ImuConfig:
 IMU_PRESETS: dict[str, ImuConfig] = {
     "ideal": ImuConfig(gyro_sigma=0.0, gyro_bias_sigma=0.0, accel_sigma=0.0, accel_bias_sigma=0.0),
     "typical": ImuConfig(),
+    "drifting": ImuConfig(gyro_bias_sigma=GYRO_STEP / math.sqrt(12.0)),
 }
-"""Named settings of the IMU."""
+"""Named settings of the IMU. ``drifting`` is the robot whose gyroscope the firmware zeroed by the
+mean of 512 readings but in whole steps (OpenCR MPU9250.cpp@2bd5e0c): what is left is spread over
+one step, 0.0003 rad/s or a degree a minute."""
 
 
 class InertialUnit:

@@ -42,8 +42,9 @@ class EpisodeConfig:
     """frontier or reactive."""
     odometry: str = "typical"
     """Wheel and odometry errors: ideal, typical, poor, or truth (no error at all)."""
-    odometry_yaw: Literal["encoders", "imu"] = "encoders"
-    """Where odometry takes its yaw from: encoders as the thesis, imu as ROBOTIS."""
+    odometry_yaw: Literal["encoders", "imu"] = "imu"
+    """Where odometry takes its yaw from: imu as the robot's firmware does, or encoders as the
+    thesis has it."""
     lidar: str = "datasheet"
     """Lidar noise: datasheet, worst_case, measured or ideal."""
     resolution: float = 0.01

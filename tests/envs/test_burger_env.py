@@ -193,7 +193,7 @@ def test_rendering_gives_a_picture_only_when_asked_for(monkeypatch: pytest.Monke
 
 
 def test_odometry_yaw_chooses_the_source_of_the_heading() -> None:
-    wheels = BurgerEnv(ROOM, odometry="poor", imu="ideal")
+    wheels = BurgerEnv(ROOM, odometry="poor", odometry_yaw="encoders", imu="ideal")
     gyro = BurgerEnv(ROOM, odometry="poor", odometry_yaw="imu", imu="ideal")
     errors = []
     for env in (wheels, gyro):
