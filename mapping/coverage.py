@@ -97,8 +97,21 @@ def _count(
         map_row = map_rows[row]
         if map_row < 0:
             continue
-        for column in range(first_column * TILE, min(last_column * TILE, columns)):
-            map_column = map_columns[column]
-            wanted = visible_free[row, column] and map_column >= 0
-            if wanted and log_odds[map_row, map_column] < free_below:
-                known_free[row // TILE, column // TILE] += 1
+        for tile in range(first_column, last_column):
+            first, last = tile * TILE, min((tile + 1) * TILE, columns)
+            if map_columns[first] >= 0 and map_columns[last - 1] - map_columns[first] == (
+                last - 1 - first
+            ):  # equal cells side by side, the usual case: this loop runs on whole registers
+                begin = map_columns[first]
+                line = log_odds[map_row, begin : begin + last - first]
+                wanted = visible_free[row, first:last]
+                count = 0
+                for k in range(last - first):
+                    count += wanted[k] & (line[k] < free_below)
+                known_free[row // TILE, tile] += count
+                continue
+            for column in range(first, last):
+                map_column = map_columns[column]
+                is_wanted = visible_free[row, column] and map_column >= 0
+                if is_wanted and log_odds[map_row, map_column] < free_below:
+                    known_free[row // TILE, tile] += 1

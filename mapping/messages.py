@@ -6,7 +6,7 @@ so that mappers and navigators see the same types from the simulator and from a 
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -121,13 +121,35 @@ class Imu:
 
     @classmethod
     def from_observation(cls, observation: Observation) -> "Sequence[Imu]":
-        """Every IMU message that arrived in the last control period, oldest first."""
-        return [
-            cls(
-                stamp=float(row[0]),
-                orientation=row[1:5],
-                angular_velocity=row[5:8],
-                linear_acceleration=row[8:11],
-            )
-            for row in observation["imu"]
-        ]
+        """Every IMU message that arrived in the last control period, oldest first.
+
+        Each is made when it is asked for: a mapper that uses none pays for none.
+        """
+        return _ImuRows(observation["imu"])
+
+
+class _ImuRows(Sequence[Imu]):
+    """Rows ``(n, 11)`` of an observation, seen as messages."""
+
+    def __init__(self, rows: NDArray[np.float64]) -> None:
+        self._rows = rows
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    @overload
+    def __getitem__(self, index: int) -> Imu: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> Sequence[Imu]: ...
+
+    def __getitem__(self, index: int | slice) -> Imu | Sequence[Imu]:
+        if isinstance(index, slice):
+            return _ImuRows(self._rows[index])
+        row = self._rows[index]
+        return Imu(
+            stamp=float(row[0]),
+            orientation=row[1:5],
+            angular_velocity=row[5:8],
+            linear_acceleration=row[8:11],
+        )

@@ -27,19 +27,17 @@ class OdometryMapper(ABC):
         self.updates = 0
         self.scans_dropped = 0
         self.track = OdometryTrack()
-        self._newest_scan = -np.inf
-
-    @property
-    def pose_map(self) -> Pose:
+        self.pose_map: Pose = self.start_pose_map
         """The newest pose in the map frame ``(3,)``; the start pose before any odometry."""
-        newest = self.track.newest
-        return self.start_pose_map if newest is None else compose(self.start_pose_map, newest)
+        self._newest_scan = -np.inf
 
     def update(
         self, scan: LaserScan | None, odometry: Sequence[Odometry], imu: Sequence[Imu] = ()
     ) -> None:
         """Take the messages of one control period; IMU readings are not used."""
         self.track.add(odometry)
+        if self.track.newest is not None:
+            self.pose_map = compose(self.start_pose_map, self.track.newest)
         if scan is None or scan.stamp == self._newest_scan:
             return
         if scan.stamp > self._newest_scan:

@@ -26,6 +26,7 @@ class MappingAgent:
     def __init__(self, mapper: Mapper, navigator: Navigator) -> None:
         self.mapper = mapper
         self.navigator = navigator
+        self._scan: LaserScan | None = None
         self.map_update_seconds: list[float] = []
         """Wall time of each mapper update that took in a scan [s]."""
         self.navigator_seconds: list[float] = []
@@ -33,7 +34,9 @@ class MappingAgent:
 
     def act(self, observation: Observation) -> Action:
         """Update the map with all messages of the last control period, then command."""
-        scan = LaserScan.from_observation(observation)
+        if self._scan is None or observation["scan_stamp"][0] != self._scan.stamp:
+            self._scan = LaserScan.from_observation(observation)
+        scan = self._scan
         before = self.mapper.updates
         started = perf_counter()
         self.mapper.update(

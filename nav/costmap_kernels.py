@@ -28,20 +28,22 @@ def pool_states(
     Occupied when any fine cell is; else free when at least ``min_free`` of them are free.
     """
     rows, columns = log_odds.shape
+    first = window[2] * factor
+    width = min(window[3] * factor, columns) - first
+    free = np.empty((window[3] - window[2]) * factor, dtype=np.int32)
+    occupied = np.empty_like(free)
     for row in range(window[0], window[1]):
+        free[:], occupied[:] = 0, 0
+        for i in range(row * factor, min((row + 1) * factor, rows)):
+            line = log_odds[i, first : first + width]
+            for j in range(width):  # counted by columns first: this loop runs on whole registers
+                free[j] += line[j] < free_below
+                occupied[j] += line[j] > occupied_above
         for column in range(window[2], window[3]):
-            free = 0
-            occupied = False
-            fine_rows = min((row + 1) * factor, rows)
-            fine_columns = min((column + 1) * factor, columns)
-            for i in range(row * factor, fine_rows):
-                for j in range(column * factor, fine_columns):
-                    value = log_odds[i, j]
-                    occupied |= value > occupied_above
-                    free += value < free_below
-            if occupied:
+            begin = (column - window[2]) * factor
+            if occupied[begin : begin + factor].sum() > 0:
                 states[row, column] = OCCUPIED
-            elif free >= min_free:
+            elif free[begin : begin + factor].sum() >= min_free:
                 states[row, column] = FREE
             else:
                 states[row, column] = UNKNOWN

@@ -44,7 +44,7 @@ class ExplorerConfig:
     recovery: RecoveryConfig = RecoveryConfig()
     first_look: float = 1.0
     """Time to stand and look before the first decision [s]: a mapper may want several scans."""
-    decide_every: float = 2.0
+    decide_every: float = 3.0
     """Longest time between two decisions while driving [s]."""
     glance_every: float = 1.0
     """How often the goal's worth is looked at while driving [s]."""

@@ -27,7 +27,7 @@ class FrontierConfig:
             raise TestbedError(f"frontier min_cells: {self.min_cells}; must be at least 1")
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Frontier:
     """A connected border between free and unknown."""
 

@@ -56,6 +56,7 @@ class CostField:
             max_cost,
             escape_radius,
             ESCAPE_COST,
+            1.0 + costmap.config.closeness_cost,
         )
         return cls(costmap=costmap, cost_to_come=cost_to_come, parents=parents)
 

@@ -1,6 +1,6 @@
 """The planner's inner loops: Dijkstra's search, walking back along it, pulling a path taut."""
 
-import heapq
+import math
 
 import numpy as np
 from numba import njit
@@ -10,6 +10,7 @@ from mapping.grid import OCCUPIED
 
 FORBIDDEN_COST = 1.0e4
 """Stands for infinity where costs are added up and subtracted again."""
+SQRT2 = math.sqrt(2.0)
 TAUT_CELLS = 80
 """Longest straight piece that is looked for, 4 m at 5 cm: longer ones gain next to nothing."""
 
@@ -24,39 +25,97 @@ def spread_cost(
     max_cost: float,
     escape_radius: float,
     escape_cost: float,
+    dearest: float,
 ) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
-    """Dijkstra over eight neighbours; a step costs its length times the mean cost of its ends."""
+    """Dijkstra over eight neighbours; a step costs its length times the mean cost of its ends.
+
+    Open cells wait in buckets as wide as the cheapest step (Dial 1969; with that width no cell of a
+    bucket can make another of it cheaper, so the result is exact), which is several times faster
+    than a heap. ``dearest`` is the largest cost per metre that is not infinite.
+    """
     rows, columns = cost.shape
     cost_to_come = np.full((rows, columns), np.inf, dtype=np.float32)
     parents = np.full((rows, columns), -1, dtype=np.int32)
     if not (0 <= start_row < rows and 0 <= start_column < columns):
         return cost_to_come, parents
-    escape_cells = escape_radius / resolution
+    buckets = np.full(int(SQRT2 * max(escape_cost, dearest)) + 3, -1, dtype=np.int32)
+    after = np.full(rows * columns, -1, dtype=np.int32)
+    before = np.full(rows * columns, -1, dtype=np.int32)
+    slots = np.full(rows * columns, -1, dtype=np.int32)
+    start = start_row * columns + start_column
     cost_to_come[start_row, start_column] = 0.0
-    heap = [(np.float32(0.0), np.int32(start_row * columns + start_column))]
-    while len(heap) > 0:
-        so_far, index = heapq.heappop(heap)
-        row, column = index // columns, index % columns
-        if so_far > cost_to_come[row, column]:
+    _put(start, 0, buckets, after, before, slots)
+    open_cells, bucket = 1, 0
+    while open_cells > 0 and bucket * resolution <= max_cost:
+        index = buckets[bucket % len(buckets)]
+        if index < 0:
+            bucket += 1
             continue
-        if so_far > max_cost:
-            break
+        _take(index, buckets, after, before, slots)
+        open_cells -= 1
+        row, column = index // columns, index % columns
+        so_far = cost_to_come[row, column]
         here = min(cost[row, column], np.float32(escape_cost))
         for i in range(max(row - 1, 0), min(row + 2, rows)):
             for j in range(max(column - 1, 0), min(column + 2, columns)):
                 there = cost[i, j]
-                if not np.isfinite(there):
-                    away = np.hypot(i - start_row, j - start_column)
-                    if states[i, j] == OCCUPIED or away > escape_cells:
+                if there == np.inf:
+                    away = np.hypot(i - start_row, j - start_column) * resolution
+                    if states[i, j] == OCCUPIED or away > escape_radius:
                         continue
                     there = np.float32(escape_cost)
-                length = resolution * np.sqrt(float(abs(i - row) + abs(j - column)))
-                total = np.float32(so_far + length * 0.5 * (here + there))
+                elif cost[row, column] != np.inf and (
+                    cost[i, column] == np.inf or cost[row, j] == np.inf
+                ):
+                    continue  # a diagonal step must not cut the corner of a closed cell
+                steps = np.float32(SQRT2 if i != row and j != column else 1.0)
+                total = np.float32(so_far + resolution * steps * 0.5 * (here + there))
                 if total < cost_to_come[i, j]:
+                    cell = i * columns + j
+                    if slots[cell] >= 0:
+                        _take(cell, buckets, after, before, slots)
+                        open_cells -= 1
                     cost_to_come[i, j] = total
                     parents[i, j] = index
-                    heapq.heappush(heap, (total, np.int32(i * columns + j)))
+                    slot = max(int(total / resolution), bucket) % len(buckets)
+                    _put(cell, slot, buckets, after, before, slots)
+                    open_cells += 1
     return cost_to_come, parents
+
+
+@njit(cache=True)
+def _put(
+    cell: int,
+    slot: int,
+    buckets: NDArray[np.int32],
+    after: NDArray[np.int32],
+    before: NDArray[np.int32],
+    slots: NDArray[np.int32],
+) -> None:
+    """Put a cell at the head of a bucket's list and note which one it is in."""
+    head = buckets[slot]
+    after[cell], before[cell], slots[cell] = head, -1, slot
+    if head >= 0:
+        before[head] = cell
+    buckets[slot] = cell
+
+
+@njit(cache=True)
+def _take(
+    cell: int,
+    buckets: NDArray[np.int32],
+    after: NDArray[np.int32],
+    before: NDArray[np.int32],
+    slots: NDArray[np.int32],
+) -> None:
+    """Take a cell out of the list of the bucket it is in."""
+    if before[cell] >= 0:
+        after[before[cell]] = after[cell]
+    else:
+        buckets[slots[cell]] = after[cell]
+    if after[cell] >= 0:
+        before[after[cell]] = before[cell]
+    slots[cell] = -1
 
 
 @njit(cache=True)

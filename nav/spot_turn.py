@@ -1,4 +1,4 @@
-"""Keeps to one way round while turning on the spot, and tries the other when the first is blocked."""
+"""Keeps to one way round while turning on the spot; tries the other when that is blocked."""
 
 import math
 

@@ -48,7 +48,7 @@ class ViewpointConfig:
             raise TestbedError("viewpoint: gain_beams and view_distances must not be empty")
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Viewpoint:
     """A reachable place and what it would show."""
 

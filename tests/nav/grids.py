@@ -6,6 +6,11 @@ from numpy.typing import NDArray
 from mapping.grid import GridConfig, OccupancyGrid
 from nav.costmap import Costmap, CostmapConfig
 
+ROOM_WITH_UNKNOWN_EAST = "\n".join(
+    ["#" * 41 + "?" * 39] + ["#" + "." * 40 + "?" * 39] * 40 + ["#" * 41 + "?" * 39]
+)
+"""A room of 2 x 2 m with walls on three sides and the unknown on the fourth."""
+
 LOG_ODDS = {"#": 5.0, ".": -5.0, "?": 0.0}
 
 

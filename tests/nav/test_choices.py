@@ -11,9 +11,13 @@ from nav.frontier import Frontier
 from nav.given_up import GivenUp
 from nav.headway import Headway, HeadwayConfig
 from nav.navigators import make_navigator
+from nav.planner import CostField
 from nav.reactive import Reactive
 from nav.recovery import Recovery, open_heading
+from nav.spot_turn import SpotTurn
 from nav.viewpoint import Viewpoint
+from nav.visited_places import VisitedPlaces
+from tests.nav.grids import costmap_of, grid_from_log_odds
 
 
 def frontier_at(x: float, y: float) -> Frontier:
@@ -22,28 +26,76 @@ def frontier_at(x: float, y: float) -> Frontier:
 
 def viewpoint_at(x: float, y: float, gain: float) -> Viewpoint:
     place = np.array([x, y])
-    return Viewpoint(
-        place=place, frontier=frontier_at(x, y), gain=gain, cost=float(np.hypot(*place))
-    )
+    cost = OPEN_FIELD.cost_at(place)
+    return Viewpoint(place=place, frontier=frontier_at(x, y), gain=gain, cost=cost)
+
+
+OPEN_FIELD = CostField.around(
+    costmap_of(grid_from_log_odds(np.full((200, 200), -5.0), 0.05)), (5.0, 5.0)
+)
+MIDDLE = np.array([5.0, 5.0, 0.0])
+
+
+def choice(*viewpoints: Viewpoint, current: Viewpoint | None = None) -> Viewpoint | None:
+    return choose(viewpoints, OPEN_FIELD, MIDDLE, current, DecisionConfig())
 
 
 def test_of_two_equal_gains_the_nearer_is_chosen() -> None:
-    near, far = viewpoint_at(1.0, 0.0, 1.0), viewpoint_at(3.0, 0.0, 1.0)
-    assert choose([far, near], OPEN_FIELD, np.zeros(3), None, DecisionConfig()) is near
+    near, far = viewpoint_at(6.0, 5.0, 1.0), viewpoint_at(8.0, 5.0, 1.0)
+    assert choice(far, near) is near
+
+
+def test_much_to_see_far_off_waits_for_a_crumb_on_the_way() -> None:
+    crumb, room = viewpoint_at(6.0, 5.0, 0.3), viewpoint_at(9.0, 5.0, 4.0)
+    assert choice(crumb, room) is crumb
+    behind = viewpoint_at(2.0, 5.0, 0.3)
+    assert choice(behind, room) is room
 
 
 def test_a_slightly_better_frontier_does_not_make_the_robot_turn_back() -> None:
-    here, there = viewpoint_at(1.0, 0.0, 1.0), viewpoint_at(1.0, 1.0, 1.3)
-    config = DecisionConfig()
-    assert (
-        choose([here, there], OPEN_FIELD, np.zeros(3), None, config) is there
-        or config.loyalty > 1.0
-    )
-    assert choose([here, there], OPEN_FIELD, np.zeros(3), here, config) is here
+    here, there = viewpoint_at(6.0, 5.0, 1.0), viewpoint_at(4.2, 5.0, 3.0)
+    assert choice(here, there) is there
+    assert choice(here, there, current=here) is here
 
 
 def test_of_no_viewpoints_none_is_chosen() -> None:
-    assert choose([], OPEN_FIELD, np.zeros(3), None, DecisionConfig()) is None
+    assert choice() is None
+
+
+def test_of_more_viewpoints_than_are_toured_one_is_chosen_all_the_same() -> None:
+    many = [viewpoint_at(1.0 + 0.1 * k, 3.0, 1.0) for k in range(60)]
+    assert choice(*many) in many
+
+
+def test_two_disappointments_make_a_frontier_given_up() -> None:
+    given_up = GivenUp()
+    given_up.disappoint(frontier_at(1.0, 1.0), "nothing new")
+    assert not given_up.holds(frontier_at(1.0, 1.0))
+    given_up.disappoint(frontier_at(1.0, 1.0), "nothing new")
+    assert given_up.holds(frontier_at(1.0, 1.0))
+
+
+def test_marks_keep_their_places_when_the_map_grows() -> None:
+    grid = OccupancyGrid()
+    costmap = costmap_of(grid)
+    visited = VisitedPlaces()
+    visited.note(costmap, (1.0, -0.5))
+    grid.cover(-4.0, 1.0, -4.0, 1.0)
+    costmap.refresh(grid)
+    marks = visited.on(costmap)
+    assert marks.shape == costmap.states.shape
+    assert marks[tuple(costmap.world_to_cell((1.1, -0.5)))]
+    assert not marks[tuple(costmap.world_to_cell((1.4, -0.5)))]
+
+
+def test_a_blocked_turn_is_tried_the_other_way_round() -> None:
+    turn = SpotTurn()
+    turn.begin(1.0, 0.0)
+    directions = [turn.update(0.0, 0.1) for _ in range(10)]
+    assert directions[:5] == [1.0] * 5
+    assert directions[-1] == -1.0
+    turn.begin(1.0, 0.0)
+    assert [turn.update(0.1 * k, 0.1) for k in range(1, 20)] == [1.0] * 19
 
 
 def test_a_frontier_given_up_gets_one_second_chance_and_keeps_its_last_reason() -> None:

@@ -24,7 +24,8 @@ def scipy_costs(costmap: Costmap, start: tuple[int, int]) -> np.ndarray:
                     if (di, dj) == (0, 0) or not (0 <= k < rows and 0 <= m < columns):
                         continue
                     mean = 0.5 * (costmap.cost[i, j] + costmap.cost[k, m])
-                    if np.isfinite(mean):
+                    corners = costmap.cost[i, m] + costmap.cost[k, j]
+                    if np.isfinite(mean) and np.isfinite(corners):
                         sources.append(i * columns + j)
                         targets.append(k * columns + m)
                         weights.append(costmap.resolution * np.hypot(di, dj) * mean)

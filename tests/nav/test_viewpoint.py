@@ -1,0 +1,78 @@
+"""Viewpoints on maps small enough to count by hand."""
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from mapping.grid import FREE
+from nav.costmap import Costmap
+from nav.frontier import FrontierConfig, find_frontiers
+from nav.planner import CostField
+from nav.viewpoint import Viewpoint, ViewpointConfig, ViewpointFinder, gain_at
+from nav.visited_places import VisitedPlaces
+from tests.nav.grids import ROOM_WITH_UNKNOWN_EAST, costmap_of, grid_from_text, random_grid
+
+HERE = np.array([1.0, 1.0])
+
+
+def viewpoints_from(
+    costmap: Costmap, start: np.ndarray, visited: VisitedPlaces | None = None
+) -> list[Viewpoint]:
+    field = CostField.around(costmap, start, escape_radius=0.0)
+    frontiers = find_frontiers(costmap, FrontierConfig())
+    places = (visited or VisitedPlaces()).on(costmap)
+    return ViewpointFinder().find(field, frontiers, places, start)
+
+
+@given(seed=st.integers(0, 10_000))
+@settings(max_examples=15, deadline=None)
+def test_viewpoints_are_reachable_clear_and_promise_enough(seed: int) -> None:
+    config = ViewpointConfig()
+    costmap = costmap_of(random_grid(seed))
+    cells = np.argwhere(np.isfinite(costmap.cost))
+    for viewpoint in viewpoints_from(costmap, costmap.cell_to_world(cells[len(cells) // 2])):
+        row, column = costmap.world_to_cell(viewpoint.place)
+        assert costmap.states[row, column] == FREE
+        assert np.isfinite(viewpoint.cost)
+        assert costmap.clearance[row, column] >= config.view_clearance - 1e-6
+        assert viewpoint.gain >= config.min_gain
+
+
+def test_the_robot_is_sent_to_known_ground_from_which_the_frontier_is_in_view() -> None:
+    costmap = costmap_of(grid_from_text(ROOM_WITH_UNKNOWN_EAST))
+    found = viewpoints_from(costmap, np.array([0.3, 1.0]))
+    assert found
+    assert all(0.9 < viewpoint.place[0] < 2.0 for viewpoint in found)
+
+
+def test_a_place_where_the_robot_has_stood_promises_nothing_any_more() -> None:
+    costmap = costmap_of(grid_from_text(ROOM_WITH_UNKNOWN_EAST))
+    visited = VisitedPlaces()
+    for x in np.arange(0.3, 1.95, 0.1):
+        for y in np.arange(0.2, 1.9, 0.1):
+            visited.note(costmap, (x, y))
+    assert viewpoints_from(costmap, HERE, visited) == []
+    assert viewpoints_from(costmap, HERE)
+
+
+def test_gain_is_the_unknown_area_in_view_and_walls_hide_what_is_behind() -> None:
+    config = ViewpointConfig(gain_depth=0.5, gain_range=3.0)
+    seen = gain_at(costmap_of(grid_from_text(ROOM_WITH_UNKNOWN_EAST)), np.array([1.9, 1.0]), config)
+    assert 0.7 < seen < 1.7, "about a band of 0.5 m along 2 m of border, widened at its ends"
+    closed = grid_from_text(ROOM_WITH_UNKNOWN_EAST.replace(".?", "#?"))
+    assert gain_at(costmap_of(closed), HERE, config) == 0.0
+
+
+def test_a_place_outside_the_map_promises_nothing() -> None:
+    costmap = costmap_of(grid_from_text(".."))
+    assert gain_at(costmap, np.array([9.0, 9.0]), ViewpointConfig()) == 0.0
+
+
+def test_a_crumb_far_away_is_not_worth_the_way_that_a_near_one_is() -> None:
+    costmap = costmap_of(grid_from_text(ROOM_WITH_UNKNOWN_EAST))
+    frontiers = find_frontiers(costmap, FrontierConfig())
+    nothing = VisitedPlaces().on(costmap)
+    dear = ViewpointFinder(ViewpointConfig(min_share_per_metre=5.0))
+    far, near = np.array([0.3, 1.0]), HERE
+    assert dear.find(CostField.around(costmap, far), frontiers, nothing, far) == []
+    assert dear.find(CostField.around(costmap, near), frontiers, nothing, near)
