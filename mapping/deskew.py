@@ -9,9 +9,10 @@ from collections.abc import Sequence
 from math import isfinite
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from mapping.geometry import Pose, wrap_to_pi
+from mapping.deskew_kernels import interpolate
+from mapping.geometry import Pose
 from mapping.messages import Odometry
 
 KEEP_S = 0.6
@@ -65,28 +66,5 @@ class OdometryTrack:
         first, last = rows[0, 0], rows[-1, 0]
         if stamps.size and (stamps.min() < first - REACH_S or stamps.max() > last + REACH_S):
             return None
-        within = np.clip(stamps, first, last)
-        yaw = np.unwrap(rows[:, 3])
-        poses = np.stack(
-            [np.interp(within, rows[:, 0], column) for column in (rows[:, 1], rows[:, 2], yaw)],
-            axis=-1,
-        )
-        nearest = np.where(stamps[:, np.newaxis] < first, rows[0, 4:6], rows[-1, 4:6])
-        return _advance(poses, nearest, stamps - within)
-
-
-def _advance(
-    poses: Pose, twists: NDArray[np.float64], durations: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Poses ``(n, 3)`` after driving twists ``(n, 2)`` for durations ``(n,)``, by midpoint yaw."""
-    turned = twists[:, 1] * durations
-    gone = twists[:, 0] * durations
-    heading = poses[:, 2] + 0.5 * turned
-    return np.stack(
-        (
-            poses[:, 0] + gone * np.cos(heading),
-            poses[:, 1] + gone * np.sin(heading),
-            wrap_to_pi(poses[:, 2] + turned),
-        ),
-        axis=-1,
-    )
+        poses: Pose = interpolate(rows, stamps)
+        return poses

@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mapping.burger import LIDAR_POSE_BASE, LIDAR_RANGE_MAX
+from mapping.deskew_kernels import aim
 from mapping.errors import TestbedError
-from mapping.geometry import Pose, compose
 from mapping.grid import GridConfig, OccupancyGrid
 from mapping.hit_cells import hit_cells, raise_to, raised_values
 from mapping.messages import LaserScan
@@ -101,20 +101,21 @@ class Ogm(OdometryMapper):
         poses_odom = self.track.poses_at(scan.beam_stamps[beams.indices])
         if poses_odom is None or beams.indices.size == 0:
             return False
-        sensors = compose(compose(self.start_pose_map, poses_odom), self.config.lidar_pose_base)
-        angles = sensors[:, 2] + scan.angles[beams.indices]
-        directions = np.column_stack((np.cos(angles), np.sin(angles)))
-        reach = beams.lengths + BEHIND_CELLS * self.grid.resolution
-        ends = sensors[:, :2] + reach[:, np.newaxis] * directions
-        self._cover(sensors, ends)
-        self._update(beams, sensors[:, :2], directions, ends, scan.angle_increment)
+        origins, directions, ends = aim(
+            self.start_pose_map,
+            poses_odom,
+            self.config.lidar_pose_base,
+            scan.angles[beams.indices],
+            beams.lengths + BEHIND_CELLS * self.grid.resolution,
+        )
+        self._cover(np.concatenate((origins, ends)))
+        self._update(beams, origins, directions, ends, scan.angle_increment)
         return True
 
-    def _cover(self, sensors: Pose, ends: NDArray[np.float64]) -> None:
+    def _cover(self, points: NDArray[np.float64]) -> None:
         """Let the grid grow over all that the beams passed."""
-        low = np.minimum(sensors[:, :2].min(axis=0), ends.min(axis=0))
-        high = np.maximum(sensors[:, :2].max(axis=0), ends.max(axis=0))
-        self.grid.cover(float(low[0]), float(high[0]), float(low[1]), float(high[1]))
+        (left, bottom), (right, top) = points.min(axis=0), points.max(axis=0)
+        self.grid.cover(float(left), float(right), float(bottom), float(top))
 
     def _update(
         self,

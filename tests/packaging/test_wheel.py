@@ -57,7 +57,7 @@ def test_the_wheel_runs_an_episode_in_a_clean_environment(wheel: Path, tmp_path:
         "import sys, mapping; assert 'venv' in mapping.__file__, mapping.__file__;"
         "from scripts.__main__ import run; sys.exit(run(sys.argv[1:]))"
     )
-    words = "explore --world empty_room --resolution 0.05 --time-limit 3 --out run".split()
+    words = "explore --world empty_room --resolution 0.05 --time-limit 1.5 --out run".split()
     # Uncompiled kernels: compiling them would take a minute, running them takes seconds.
     outcome = subprocess.run(
         [str(home / "bin" / "python"), "-c", code, *words],
@@ -70,4 +70,4 @@ def test_the_wheel_runs_an_episode_in_a_clean_environment(wheel: Path, tmp_path:
     assert outcome.returncode == 1, f"out of time is status 1\n{outcome.stderr}"
     result = json.loads((tmp_path / "run" / "result.json").read_text())
     assert result["stop_reason"] == "time_limit"
-    assert result["map_updates"] > 10
+    assert result["map_updates"] > 3
