@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from envs.burger_constants import IMU_POSITION, IMU_RATE
-from envs.imu_kernels import GRAVITY, madgwick, specific_forces
+from envs.imu_kernels import GRAVITY, disturb, madgwick, specific_forces
 from mapping.errors import TestbedError
 from mapping.messages import IMU_COLUMNS
 
@@ -93,12 +93,13 @@ class InertialUnit:
         """
         n = len(stamps)
         noise = self._rng.standard_normal((n, 6))
-        rates = velocities[1:, 3:] + self._gyro_bias + self.config.gyro_sigma * noise[:, :3]
+        config = self.config
         forces = specific_forces(positions, velocities, self._offset, PERIOD)
-        forces += self._accel_bias + self.config.accel_sigma * noise[:, 3:]
-        rates = np.clip(rates, -GYRO_RANGE, GYRO_RANGE)
-        forces = np.clip(forces, -ACCEL_RANGE, ACCEL_RANGE)
-        attitudes = madgwick(self._attitude, rates, forces, PERIOD, self.config.filter_gain)
+        rates = disturb(
+            velocities[1:, 3:], self._gyro_bias, config.gyro_sigma, noise[:, :3], GYRO_RANGE
+        )
+        forces = disturb(forces, self._accel_bias, config.accel_sigma, noise[:, 3:], ACCEL_RANGE)
+        attitudes = madgwick(self._attitude, rates, forces, PERIOD, config.filter_gain)
         if n:
             self._attitude = attitudes[-1]
         rows = np.empty((n, len(IMU_COLUMNS)))

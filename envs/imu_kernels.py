@@ -44,6 +44,31 @@ def specific_forces(
 
 
 @njit(cache=True)
+def disturb(
+    true: NDArray[np.float64],
+    bias: NDArray[np.float64],
+    sigma: float,
+    noise: NDArray[np.float64],
+    limit: float,
+) -> NDArray[np.float64]:
+    """What a sensor of three axes makes of true values ``(n, 3)``: biased, noisy, clipped.
+
+    Args:
+        true: True values ``(n, 3)``.
+        bias: Constant error of each axis ``(3,)``.
+        sigma: Standard deviation of the noise.
+        noise: Standard normal numbers ``(n, 3)``.
+        limit: Largest value that the sensor reports.
+    """
+    measured = np.empty(true.shape)
+    for i in range(len(true)):
+        for axis in range(3):
+            value = true[i, axis] + bias[axis] + sigma * noise[i, axis]
+            measured[i, axis] = min(max(value, -limit), limit)
+    return measured
+
+
+@njit(cache=True)
 def madgwick(
     attitude: NDArray[np.float64],
     rates: NDArray[np.float64],

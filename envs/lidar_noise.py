@@ -134,16 +134,17 @@ def report(
     hit = np.isfinite(distances)
     true = np.where(hit, distances, 0.0)
     far = true >= config.near_range
-    wrong = lot < config.wrong
     sigma = np.where(far, config.far_sigma * true, config.near_sigma)
-    sigma[wrong] = config.wrong_sigma
-    bias = np.where(far, config.far_bias * true, config.near_bias)
-    measured = (1.0 + unit.scale) * true + unit.bias_sign * bias + sigma * noise
+    if config.wrong > 0.0:
+        sigma[lot < config.wrong] = config.wrong_sigma
+    measured = (1.0 + unit.scale) * true + sigma * noise
+    if config.near_bias > 0.0 or config.far_bias > 0.0:
+        measured += unit.bias_sign * np.where(far, config.far_bias * true, config.near_bias)
     if config.resolution > 0.0:
         measured = np.round(measured / config.resolution) * config.resolution
     no_return = math.inf if config.no_return == "inf" else 0.0
     ranges = np.where(hit & (measured <= LIDAR_RANGE_MAX), measured, no_return)
     ranges[ranges < LIDAR_RANGE_MIN] = 0.0
-    failed = lot >= 1.0 - np.where(hit, config.dropout, config.open_dropout)
-    ranges[failed] = 0.0
+    if config.dropout > 0.0 or config.open_dropout > 0.0:
+        ranges[lot >= 1.0 - np.where(hit, config.dropout, config.open_dropout)] = 0.0
     return ranges.astype(np.float32)

@@ -4,6 +4,7 @@ The map is drawn at 1 cm but planned on at 5 cm. Clearance is still measured to 
 that a 0.30 m door does not close because a coarse cell was rounded the wrong way.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,7 +26,7 @@ class CostmapConfig:
     """A cell is free when at least this share of its fine cells is free and none is occupied."""
     lethal_clearance: float = ROBOT_RADIUS
     """The robot's centre never comes closer than this to an occupied cell [m]."""
-    inflation: float = 0.35
+    inflation: float = 0.30
     """Clearance from which a cell costs no more than its length [m]."""
     closeness_cost: float = 6.0
     """How many times its length more a step costs at the lethal clearance."""
@@ -88,9 +89,11 @@ class Costmap:
         cells = np.asarray(cells, dtype=np.float64)
         return self.origin + (cells[..., ::-1] + 0.5) * self.resolution
 
-    def clearance_at(self, point: ArrayLike) -> float:
+    def clearance_at(self, point: tuple[float, float]) -> float:
         """Clearance [m] of the cell that holds a point; 0 outside the map."""
-        row, column = self.world_to_cell(point)
+        x, y = point
+        row = math.floor((y - self.origin[1]) / self.resolution)
+        column = math.floor((x - self.origin[0]) / self.resolution)
         rows, columns = self.states.shape
         if 0 <= row < rows and 0 <= column < columns:
             return float(self.clearance[row, column])

@@ -5,6 +5,7 @@ for it, look at the map again and decide anew. A robot that makes no headway rec
 that cannot be had is given up with a reason, and tried once more at the end.
 """
 
+import math
 from dataclasses import dataclass
 from enum import Enum, auto
 
@@ -21,6 +22,7 @@ from nav.given_up import GivenUp
 from nav.headway import Headway
 from nav.navigator import COMPLETE, RUNNING, STUCK, UNREACHABLE_START, DroppedFrontier, Plan
 from nav.path_follower import FollowerConfig, PathFollower
+from nav.path_kernels import SEARCHED_POINTS, is_near
 from nav.planner import CostField
 from nav.recovery import Recovery, RecoveryConfig
 from nav.safety import Safety, SafetyConfig
@@ -44,7 +46,7 @@ class ExplorerConfig:
     recovery: RecoveryConfig = RecoveryConfig()
     first_look: float = 1.0
     """Time to stand and look before the first decision [s]: a mapper may want several scans."""
-    decide_every: float = 3.0
+    decide_every: float = 4.0
     """Longest time between two decisions while driving [s]."""
     glance_every: float = 1.0
     """How often the goal's worth is looked at while driving [s]."""
@@ -136,7 +138,7 @@ class FrontierExplorer:
         if self._headway.is_lost(pose_map, self._period):
             self._start_recovery(pose_map)
             return self._move(Twist(), pose_map, grid)
-        clearance = self._costmap.clearance_at(pose_map[:2])
+        clearance = self._costmap.clearance_at((float(pose_map[0]), float(pose_map[1])))
         return self._move(self._follower.command(pose_map, clearance), pose_map, grid)
 
     def _move(self, wanted: Twist, pose: Pose, grid: OccupancyGrid) -> Twist:
@@ -157,7 +159,7 @@ class FrontierExplorer:
         """Whether the goal is reached; says what came of it."""
         if self._goal is None:
             return False
-        gap = float(np.hypot(*(self._goal - pose[:2])))
+        gap = math.hypot(self._goal[0] - pose[0], self._goal[1] - pose[1])
         if self._task is Task.GO_HOME:
             if gap < self.config.home_tolerance:
                 self._finish(COMPLETE)
@@ -198,13 +200,8 @@ class FrontierExplorer:
 
     def _path_is_blocked(self) -> bool:
         """Whether the newest returns lie on the next stretch of the path."""
-        points, path = self._scan_points.points, self._follower.path_ahead[:20]
-        if len(points) == 0 or len(path) == 0:
-            return False
-        gaps = np.hypot(
-            points[:, None, 0] - path[None, :, 0], points[:, None, 1] - path[None, :, 1]
-        )
-        return bool(gaps.min() < self.config.path_clearance)
+        path = self._follower.path_ahead[:SEARCHED_POINTS]
+        return bool(is_near(self._scan_points.points, path, self.config.path_clearance))
 
     def _decide(self, grid: OccupancyGrid, pose: Pose) -> None:
         """Look at the map and set out for the best viewpoint, or home when none is left."""

@@ -1,10 +1,9 @@
 """Notices that a robot which wants to move does not: no new place, no new heading."""
 
+import math
 from dataclasses import dataclass
 
-import numpy as np
-
-from mapping.geometry import Pose, wrap_to_pi
+from mapping.geometry import Pose
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -30,21 +29,20 @@ class Headway:
 
     def restart(self) -> None:
         """Begin anew, with full patience."""
-        self._moved: Pose | None = None
-        self._turned: Pose | None = None
+        self._place: tuple[float, float] | None = None
+        self._yaw = 0.0
         self._since_moved = self._since_turned = 0.0
 
     def is_lost(self, pose: Pose, period: float) -> bool:
         """Take the pose of this period; whether headway is lost by now."""
-        if self._moved is None or np.hypot(*(pose - self._moved)[:2]) > self.config.distance:
-            self._moved = self._turned = pose.copy()
+        x, y, yaw = pose.tolist()
+        config = self.config
+        if self._place is None or math.dist(self._place, (x, y)) > config.distance:
+            self._place, self._yaw = (x, y), yaw
             self._since_moved = self._since_turned = 0.0
             return False
         self._since_moved += period
         self._since_turned += period
-        if self._turned is None or abs(wrap_to_pi(pose[2] - self._turned[2])) > self.config.turn:
-            self._turned, self._since_turned = pose.copy(), 0.0
-        return (
-            self._since_turned > self.config.patience
-            or self._since_moved > self.config.turning_patience
-        )
+        if abs(math.remainder(yaw - self._yaw, 2.0 * math.pi)) > config.turn:
+            self._yaw, self._since_turned = yaw, 0.0
+        return self._since_turned > config.patience or self._since_moved > config.turning_patience

@@ -38,3 +38,14 @@ def point_ahead(
             y = path[k, 1] + share * (path[k + 1, 1] - path[k, 1])
             return x, y
     return path[-1, 0], path[-1, 1]
+
+
+@njit(cache=True)
+def is_near(points: NDArray[np.float64], path: NDArray[np.float64], distance: float) -> bool:
+    """Whether any of the points ``(n, 2)`` lies nearer than ``distance`` [m] to a path point."""
+    for i in range(len(points)):
+        for k in range(len(path)):
+            dx, dy = points[i, 0] - path[k, 0], points[i, 1] - path[k, 1]
+            if dx * dx + dy * dy < distance * distance:
+                return True
+    return False

@@ -6,8 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mapping.burger import LIDAR_POSE_BASE
+from mapping.deskew_kernels import aim, interpolate
 from mapping.geometry import Pose
 from mapping.messages import LaserScan
+
+IN_THE_MAP = np.zeros(3)
+"""The poses are in the map frame already."""
 
 REMEMBERED_POSES = 8
 """Poses kept, 0.1 s apart: a scan is at most 0.3 s old when it arrives."""
@@ -20,7 +24,7 @@ class ScanPoints:
         self.points: NDArray[np.float64] = np.zeros((0, 2))
         self.time = 0.0
         self._stamp = -1.0
-        self._poses: deque[tuple[float, float, float, float]] = deque(maxlen=REMEMBERED_POSES)
+        self._poses: deque[tuple[float, ...]] = deque(maxlen=REMEMBERED_POSES)
 
     def update(self, scan: LaserScan | None, pose: Pose, period: float, reach: float) -> bool:
         """Take the pose of this control period and, if it is new, the scan.
@@ -45,21 +49,13 @@ class ScanPoints:
         return is_new
 
     def _remember(self, pose: Pose) -> None:
-        yaw = float(pose[2])
-        if self._poses:
-            last = self._poses[-1][3]
-            yaw = last + float(np.pi - np.mod(np.pi - (yaw - last), 2.0 * np.pi))
-        self._poses.append((self.time, float(pose[0]), float(pose[1]), yaw))
+        x, y, yaw = pose.tolist()
+        self._poses.append((self.time, x, y, yaw, 0.0, 0.0))
 
     def _place(self, scan: LaserScan, reach: float) -> NDArray[np.float64]:
-        ranges = scan.ranges.astype(np.float64)
-        good = (ranges >= scan.range_min) & (ranges <= min(reach, scan.range_max))
-        stamps, ranges, angles = scan.beam_stamps[good], ranges[good], scan.angles[good]
-        times, xs, ys, yaws = np.array(self._poses).T
-        yaw = np.interp(stamps, times, yaws)
-        mount_x, mount_y, mount_yaw = LIDAR_POSE_BASE
-        cos, sin = np.cos(yaw), np.sin(yaw)
-        beam = yaw + mount_yaw + angles
-        x = np.interp(stamps, times, xs) + cos * mount_x - sin * mount_y + ranges * np.cos(beam)
-        y = np.interp(stamps, times, ys) + sin * mount_x + cos * mount_y + ranges * np.sin(beam)
-        return np.column_stack((x, y))
+        good = (scan.ranges >= scan.range_min) & (scan.ranges <= min(reach, scan.range_max))
+        poses = interpolate(np.array(self._poses), scan.beam_stamps[good])
+        ranges = scan.ranges[good].astype(np.float64)
+        points: NDArray[np.float64]
+        _, _, points = aim(IN_THE_MAP, poses, LIDAR_POSE_BASE, scan.angles[good], ranges)
+        return points

@@ -13,7 +13,7 @@ import assets
 from envs.burger_constants import IMU_POSITION
 from envs.floor_plan import Box, FloorPlan
 from envs.imu import GYRO_STEP, IMU_PRESETS, PERIOD, ImuConfig, InertialUnit, yaw_of
-from envs.imu_kernels import GRAVITY, madgwick, specific_forces
+from envs.imu_kernels import GRAVITY, disturb, madgwick, specific_forces
 from envs.simulation import Simulation
 from mapping.errors import TestbedError
 from mapping.geometry import wrap_to_pi
@@ -211,3 +211,10 @@ def test_no_message_is_no_row() -> None:
 def test_figures_that_make_no_sense_are_refused(field: str, value: float) -> None:
     with pytest.raises(TestbedError, match=rf"imu {field}: .*must be"):
         ImuConfig(**{field: value})
+
+
+def test_disturbing_equals_numpys_sum_and_clip() -> None:
+    rng = np.random.default_rng(4)
+    true, noise, bias = rng.uniform(-9, 9, (20, 3)), rng.standard_normal((20, 3)), np.ones(3)
+    expected = np.clip(true + bias + 0.5 * noise, -8.0, 8.0)
+    np.testing.assert_allclose(disturb(true, bias, 0.5, noise, 8.0), expected, rtol=1e-15)

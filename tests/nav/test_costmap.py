@@ -105,7 +105,7 @@ def test_cost_is_one_in_the_open_and_infinite_where_none_may_go() -> None:
     assert np.isinf(costmap.cost[5]).all(), "unknown"
     assert np.isinf(costmap.cost[2, 19]), "occupied"
     assert np.isinf(costmap.cost[2, 18]), "0.05 m from an occupied cell"
-    assert costmap.cost[2, 14] > costmap.cost[2, 13] > 1.0
+    assert costmap.cost[2, 15] > costmap.cost[2, 14] > 1.0
 
 
 def test_a_place_outside_the_map_has_no_clearance() -> None:
