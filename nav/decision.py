@@ -29,8 +29,6 @@ class DecisionConfig:
     """Worth of settling a frontier at all [m2]: what is left behind costs a way of its own."""
     loyalty: float = 4.0
     """Time by which another first leg must be better to be turned to [s]: no oscillation."""
-    same_frontier: float = 0.6
-    """Frontiers this close to each other count as the same one [m]."""
     toured: int = 24
     """At most so many viewpoints are put in order, the best by worth per time."""
 
@@ -86,10 +84,8 @@ def _first_leg(
     offset = viewpoint.place - pose[:2]
     turn = abs(float(wrap_to_pi(np.arctan2(offset[1], offset[0]) - pose[2])))
     time = config.settling_time + viewpoint.cost / config.speed + turn / config.turn_speed
-    if current is not None:
-        apart = np.hypot(*(viewpoint.frontier.middle - current.frontier.middle))
-        if apart < config.same_frontier:
-            time = max(time - config.loyalty, 0.5 * config.settling_time)
+    if current is not None and viewpoint.is_near(current):
+        time = max(time - config.loyalty, 0.5 * config.settling_time)
     return time
 
 

@@ -6,7 +6,6 @@ that cannot be had is given up with a reason, and tried once more at the end.
 """
 
 import math
-from dataclasses import dataclass
 from enum import Enum, auto
 
 import numpy as np
@@ -14,60 +13,28 @@ import numpy as np
 from mapping.geometry import Pose
 from mapping.grid import OccupancyGrid
 from mapping.messages import LaserScan, Twist
-from nav.costmap import Costmap, CostmapConfig
-from nav.decision import DecisionConfig, choose
-from nav.former_walls import FormerWalls, FormerWallsConfig
-from nav.frontier import Frontier, FrontierConfig, find_frontiers
+from nav.costmap import Costmap
+from nav.decision import choose
+from nav.explorer_config import ExplorerConfig
+from nav.former_walls import FormerWalls
+from nav.frontier import Frontier, find_frontiers
 from nav.given_up import GivenUp
 from nav.headway import Headway
 from nav.navigator import COMPLETE, RUNNING, STUCK, UNREACHABLE_START, DroppedFrontier, Plan
-from nav.path_follower import FollowerConfig, PathFollower
+from nav.path_follower import PathFollower
 from nav.path_kernels import SEARCHED_POINTS, is_near
 from nav.planner import CostField
-from nav.recovery import Recovery, RecoveryConfig
-from nav.safety import Safety, SafetyConfig
+from nav.recovery import Recovery
+from nav.safety import Safety
 from nav.scan_points import ScanPoints
-from nav.viewpoint import Viewpoint, ViewpointConfig, ViewpointFinder, gain_at
-from nav.visited_places import VisitedPlaces, VisitedPlacesConfig
+from nav.viewpoint import Viewpoint, ViewpointFinder, gain_at
+from nav.visited_places import VisitedPlaces
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ExplorerConfig:
-    """The explorer's parts and its own patience."""
-
-    costmap: CostmapConfig = CostmapConfig()
-    frontier: FrontierConfig = FrontierConfig()
-    viewpoint: ViewpointConfig = ViewpointConfig()
-    former_walls: FormerWallsConfig = FormerWallsConfig()
-    visited_places: VisitedPlacesConfig = VisitedPlacesConfig()
-    decision: DecisionConfig = DecisionConfig()
-    follower: FollowerConfig = FollowerConfig()
-    safety: SafetyConfig = SafetyConfig()
-    recovery: RecoveryConfig = RecoveryConfig()
-    first_look: float = 1.0
-    """Time to stand and look before the first decision [s]: a mapper may want several scans."""
-    decide_every: float = 4.0
-    """Longest time between two decisions while driving [s]."""
-    glance_every: float = 1.0
-    """How often the goal's worth is looked at while driving [s]."""
-    phantom_share: float = 0.6
-    """Share of the promised gain that, still promised on arrival, makes the promise a phantom."""
-    worth_left: float = 0.35
-    """Share of the promised gain below which a goal is left for a better one."""
-    changed_reach: float = 4.2
-    """How far from the robot the map may have changed since the last look [m]."""
-    arrived: float = 0.12
-    """Distance to a viewpoint at which it is reached [m]."""
-    home_tolerance: float = 0.08
-    """Distance to the start at which the robot is home [m]."""
-    obstacle_reach: float = 1.2
-    """Returns up to this far are held against the path [m]."""
-    path_clearance: float = 0.10
-    """A return this close to the path ahead blocks it [m]."""
-    recoveries_per_goal: int = 2
-    """Recoveries after which a frontier is given up."""
-    recoveries_in_a_row: int = 8
-    """Recoveries without headway in between after which the robot is stuck."""
+NOTHING_NEW = "its viewpoints showed nothing new"
+NO_HEADWAY = "no headway on the way there"
+NO_VIEW = "no place in reach that was not tried sees it"
+NOT_WORTH_IT = "too little to see for the way there"
+"""Why a frontier is given up."""
 
 
 class Task(Enum):
@@ -100,7 +67,8 @@ class FrontierExplorer:
         self._target: Viewpoint | None = None
         self._goal: np.ndarray | None = None
         self._frontiers: list[Frontier] = []
-        self._recoveries = 0
+        self._recoveries = self._tries = 0
+        self._recovered_at: Pose | None = None
         self._decided_at = self._glanced_at = -np.inf
         self._elapsed = 0.0
 
@@ -177,8 +145,7 @@ class FrontierExplorer:
         self._look(grid, pose)
         left = gain_at(self._costmap, target.place, self.config.viewpoint)
         if left > self.config.phantom_share * target.gain:
-            self._given_up.disappoint(target.frontier, "its viewpoints showed nothing new")
-        self._recoveries = 0
+            self._given_up.disappoint(target.frontier, NOTHING_NEW)
 
     def _is_due(self, grid: OccupancyGrid, pose: Pose) -> bool:
         """Whether it is time to decide anew: long ago, or the goal has lost its worth."""
@@ -230,15 +197,16 @@ class FrontierExplorer:
         viewpoints = self._finder.find(field, open_ones, visited, pose[:2])
         best = choose(viewpoints, field, pose, self._target, config.decision)
         if best is None:
-            self._note_unreachable(open_ones)
+            self._note_left_over(open_ones)
         return best, field
 
-    def _note_unreachable(self, frontiers: list[Frontier]) -> None:
-        """Record every frontier that would be worth seeing but that no known place sees."""
+    def _note_left_over(self, frontiers: list[Frontier]) -> None:
+        """Record every frontier that hides something, and why the robot does not go there."""
         for frontier in frontiers:
             gain = gain_at(self._costmap, frontier.middle, self.config.viewpoint)
             if gain >= self.config.viewpoint.min_gain:
-                self._given_up.give_up(frontier, "no known way to a place that sees it")
+                seen = self._finder.has_view(frontier)
+                self._given_up.give_up(frontier, NOT_WORTH_IT if seen else NO_VIEW)
 
     def _is_shut_in(self, field: CostField) -> bool:
         """Whether the robot knows of no room to move in: hemmed in, or seeing nothing at all."""
@@ -259,18 +227,25 @@ class FrontierExplorer:
     def _set_out(self, field: CostField, goal: np.ndarray, target: Viewpoint | None) -> None:
         if self._goal is None or float(np.hypot(*(self._goal - goal))) > self.config.arrived:
             self._headway.restart()
+        if target is None or self._target is None or not target.is_near(self._target):
+            self._tries = 0
         self._goal, self._target = goal.copy(), target
         self._follower.set_path(field.path_to(goal))
 
     def _start_recovery(self, pose: Pose) -> None:
         """Recover; give the frontier up after too many, the robot after far too many."""
-        self._recoveries += 1
+        got_on = self._recovered_at is None or (
+            math.dist(self._recovered_at[:2], pose[:2]) > self.config.got_on
+        )
+        self._recoveries = 1 if got_on else self._recoveries + 1
+        self._recovered_at = pose.copy()
+        self._tries += 1
         self._headway.restart()
         if self._recoveries > self.config.recoveries_in_a_row:
             self._finish(STUCK)
             return
-        if self._target is not None and self._recoveries > self.config.recoveries_per_goal:
-            self._given_up.give_up(self._target.frontier, "no headway on the way there")
+        if self._target is not None and self._tries > self.config.recoveries_per_goal:
+            self._given_up.give_up(self._target.frontier, NO_HEADWAY)
             self._target = None
         self._recovery.begin(pose, in_a_row=self._recoveries)
 

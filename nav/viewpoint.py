@@ -60,6 +60,14 @@ class Viewpoint:
     cost: float
     """Cost of the way there [m, dearer near things]."""
 
+    def is_near(self, other: "Viewpoint") -> bool:
+        """Whether both show the same frontier, which may have grown or shrunk in between."""
+        apart = self.frontier.middle - other.frontier.middle
+        return bool(np.hypot(apart[0], apart[1]) < SAME_FRONTIER)
+
+
+SAME_FRONTIER = 0.6
+"""Frontiers whose middles lie this close to each other count as the same one [m]."""
 
 KEY_RESOLUTION = 0.01
 """Middles of frontiers are told apart to this [m]; planning cells are never finer."""
@@ -104,6 +112,10 @@ class ViewpointFinder:
             )
             viewpoints += self._worthwhile(field, frontier, places, per_metre)
         return viewpoints
+
+    def has_view(self, frontier: Frontier) -> bool:
+        """Whether the last search knew any place that sees a frontier, worth the way or not."""
+        return bool(self._kept.get(self._key(frontier)))
 
     def _key(self, frontier: Frontier) -> tuple[int, int, int]:
         """Tells a frontier from others and from itself grown; holds when the map grows."""

@@ -1,0 +1,54 @@
+"""The explorer's settings: those of its parts, and its own patience."""
+
+from dataclasses import dataclass
+
+from nav.costmap import CostmapConfig
+from nav.decision import DecisionConfig
+from nav.former_walls import FormerWallsConfig
+from nav.frontier import FrontierConfig
+from nav.path_follower import FollowerConfig
+from nav.recovery import RecoveryConfig
+from nav.safety import SafetyConfig
+from nav.viewpoint import ViewpointConfig
+from nav.visited_places import VisitedPlacesConfig
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExplorerConfig:
+    """The explorer's parts and its own patience."""
+
+    costmap: CostmapConfig = CostmapConfig()
+    frontier: FrontierConfig = FrontierConfig()
+    viewpoint: ViewpointConfig = ViewpointConfig()
+    former_walls: FormerWallsConfig = FormerWallsConfig()
+    visited_places: VisitedPlacesConfig = VisitedPlacesConfig()
+    decision: DecisionConfig = DecisionConfig()
+    follower: FollowerConfig = FollowerConfig()
+    safety: SafetyConfig = SafetyConfig()
+    recovery: RecoveryConfig = RecoveryConfig()
+    first_look: float = 1.0
+    """Time to stand and look before the first decision [s]: a mapper may want several scans."""
+    decide_every: float = 4.0
+    """Longest time between two decisions while driving [s]."""
+    glance_every: float = 1.0
+    """How often the goal's worth is looked at while driving [s]."""
+    phantom_share: float = 0.6
+    """Share of the promised gain that, still promised on arrival, makes the promise a phantom."""
+    worth_left: float = 0.35
+    """Share of the promised gain below which a goal is left for a better one."""
+    changed_reach: float = 4.2
+    """How far from the robot the map may have changed since the last look [m]."""
+    arrived: float = 0.12
+    """Distance to a viewpoint at which it is reached [m]."""
+    home_tolerance: float = 0.08
+    """Distance to the start at which the robot is home [m]."""
+    obstacle_reach: float = 1.2
+    """Returns up to this far are held against the path [m]."""
+    path_clearance: float = 0.10
+    """A return this close to the path ahead blocks it [m]."""
+    recoveries_per_goal: int = 2
+    """Recoveries on the way to a frontier after which it is given up."""
+    recoveries_in_a_row: int = 8
+    """Recoveries without getting on in between after which the robot is stuck."""
+    got_on: float = 1.0
+    """Distance from the last recovery's place at which the robot has got on [m]."""
