@@ -87,7 +87,7 @@ class Episode:
     sim_time: float
     """Simulated time at the end [s]."""
     wall_time: float
-    """Wall time of the loop [s], without set-up and scoring."""
+    """Wall time of the loop [s], without set-up, scoring and showing."""
     contacts: int
     coverage_times: NDArray[np.float64]
     """When coverage was measured ``(n,)`` [s]."""
@@ -169,7 +169,7 @@ def _drive(
     track = Track()
     coverages: list[tuple[float, float]] = []
     observation, info = environment.reset(seed=config.seed)
-    stop_reason, next_report = RUNNING, 0.0
+    stop_reason, next_report, telling = RUNNING, 0.0, 0.0
     started = perf_counter()
     try:
         while stop_reason == RUNNING:
@@ -181,7 +181,9 @@ def _drive(
                 next_report = time + 1.0
                 coverages.append((time, meter.measure(agent.mapper.grid, _changed(agent))))
                 if on_progress is not None:
+                    told = perf_counter()
                     on_progress(_progress(time, coverages[-1][1], agent))
+                    telling += perf_counter() - told
             if stop_reason != RUNNING:
                 break
             observation, _, _, truncated, info = environment.step(action)
@@ -189,7 +191,7 @@ def _drive(
                 stop_reason = TIME_LIMIT
     except KeyboardInterrupt:
         stop_reason = INTERRUPTED
-    wall_time = perf_counter() - started
+    wall_time = perf_counter() - started - telling
     time = float(observation["time"][0])
     coverages.append((time, meter.measure(agent.mapper.grid)))
     times, values = np.array(coverages).T

@@ -1,17 +1,16 @@
 """``burger explore``: one autonomous episode into a run folder."""
 
-import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
 import tyro
-from tqdm import tqdm
 
-from evaluation.episode import EpisodeConfig, Progress, run_episode
+from evaluation.episode import Episode, EpisodeConfig, Progress, run_episode
 from evaluation.run_folder import run_folder, write_run
-from scripts.arguments import is_terminal, parse
+from scripts.arguments import parse
 from scripts.first_run import compile_if_needed
+from scripts.live_map import LiveMap, can_draw
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,18 +59,18 @@ def _folder_name(config: EpisodeConfig) -> str:
     return f"{Path(config.world).stem}-{config.mapper}-seed{config.seed}"
 
 
-def _watch(config: EpisodeConfig) -> Any:
-    """Run the episode behind a progress line, shown on a terminal only."""
-    layout = "{desc} {n:.0f} s simulated [{elapsed} real{postfix}]"
-    with tqdm(
-        desc=f"exploring {Path(config.world).stem}",
-        bar_format=layout,
-        disable=not is_terminal(),
-        file=sys.stderr,
-    ) as line:
+def _watch(config: EpisodeConfig) -> Episode:
+    """Run the episode, its map growing before the user's eyes if there is a terminal."""
+    if not can_draw():
+        return run_episode(config)
+    live_map = LiveMap(f"exploring {Path(config.world).stem}")
+    newest: list[Progress] = []
 
-        def show(progress: Progress) -> None:
-            line.set_postfix_str(f"coverage {progress.coverage:.1%}", refresh=False)
-            line.update(progress.time - line.n)
+    def show(progress: Progress) -> None:
+        newest[:] = [progress]
+        live_map.show(progress)
 
-        return run_episode(config, show)
+    episode = run_episode(config, show)
+    for progress in newest:
+        live_map.draw(progress)
+    return episode

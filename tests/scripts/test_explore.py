@@ -1,0 +1,49 @@
+"""The explore verb as its users meet it: in a pipe and on a terminal."""
+
+import fcntl
+import json
+import os
+import pty
+import struct
+import sys
+import termios
+from pathlib import Path
+
+import pytest
+
+from scripts.__main__ import run
+
+WORDS = ["explore", "--world", "empty_room", "--odometry", "truth", "--time-limit", "4"]
+
+
+def test_in_a_pipe_it_prints_the_result_and_nothing_else(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run([*WORDS, "--out", str(tmp_path)]) == 1, "out of time"
+    captured = capsys.readouterr()
+    assert "empty_room: time_limit after 4 s" in captured.out
+    assert all(line.startswith("compiling") for line in captured.err.splitlines())
+    assert json.loads((tmp_path / "result.json").read_text())["stop_reason"] == "time_limit"
+
+
+def test_on_a_terminal_the_map_grows_before_the_users_eyes(tmp_path: Path) -> None:
+    child, terminal = pty.fork()
+    if child == 0:
+        words = [sys.executable, "-m", "scripts", *WORDS, "--out", str(tmp_path)]
+        os.execve(sys.executable, words, {**os.environ, "PYTHONIOENCODING": "utf-8"})
+    fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", 40, 100, 0, 0))
+    shown = b""
+    while True:
+        try:
+            piece = os.read(terminal, 65536)
+        except OSError:  # how Linux says that the child has closed its end
+            break
+        if not piece:
+            break
+        shown += piece
+    os.waitpid(child, 0)
+    text = shown.decode()
+    assert "exploring empty_room: 3 s simulated" in text
+    assert "●" in text
+    assert "█" in text
+    assert "empty_room: time_limit" in text
