@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from evaluation.clearance import min_clearance
-from evaluation.episode import Episode
+from evaluation.episode import Episode, Track
 from mapping.compare import score_map
-from mapping.geometry import wrap_to_pi
+from mapping.trajectory import Trajectory, path_length, score_trajectory
 
 TIMING_KEYS = (
     "wall_time_s",
@@ -43,11 +43,11 @@ def result_of(episode: Episode, map_file_kb: float | None) -> dict[str, Any]:
         "real_time_factor": round(episode.sim_time / episode.wall_time, 1),
         "coverage": float(episode.coverages[-1]),
         **_times_of_coverage(episode),
-        "path_length_m": _path_length(poses_world),
+        "path_length_m": path_length(poses_world),
         "contacts": episode.contacts,
         "min_clearance_m": min_clearance(poses_world, episode.plan.solids()),
         **_map_scores(episode),
-        **_trajectory_scores(np.array(track.pose_map), poses_world),
+        **_trajectory_scores(track),
         "map_updates": episode.map_updates,
         "scans_dropped": episode.scans_dropped,
         "map_update_ms_p50": _percentile_ms(episode.map_update_seconds, 50),
@@ -83,21 +83,15 @@ def _map_scores(episode: Episode) -> dict[str, float | None]:
     return {key: scores[key] for key in keys}
 
 
-def _trajectory_scores(
-    pose_map: NDArray[np.float64], pose_world: NDArray[np.float64]
-) -> dict[str, float | None]:
+def _trajectory_scores(track: Track) -> dict[str, float]:
     """Absolute trajectory error, unaligned: map and world share their frame."""
-    errors = np.hypot(*(pose_map - pose_world)[:, :2].T)
-    yaw_errors = np.abs(wrap_to_pi(pose_map[:, 2] - pose_world[:, 2]))
-    return {
-        "ate_rmse_m": float(np.sqrt(np.mean(errors**2))),
-        "ate_max_m": float(errors.max()),
-        "yaw_error_max_deg": float(np.degrees(yaw_errors.max())),
-    }
-
-
-def _path_length(poses: NDArray[np.float64]) -> float:
-    return float(np.hypot(*np.diff(poses[:, :2], axis=0).T).sum())
+    stamps = np.array(track.stamps)
+    scores = score_trajectory(
+        Trajectory(stamps=stamps, poses=np.array(track.pose_map)),
+        Trajectory(stamps=stamps, poses=np.array(track.pose_world)),
+    )
+    keys = ("ate_rmse_m", "ate_max_m", "yaw_error_max_deg")
+    return {key: getattr(scores, key) for key in keys}
 
 
 def _percentile_ms(seconds: NDArray[np.float64], share: float) -> float | None:
