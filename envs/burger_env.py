@@ -108,7 +108,7 @@ class BurgerEnv(gym.Env[Observation, Action]):  # type: ignore[misc]  # mypy ski
         odometry: ``typical``, ``poor``, ``ideal``, ``truth``, or an ``OdometryConfig``.
         odometry_yaw: ``encoders`` or ``imu``: what the heading in odometry comes from; None leaves
             it to ``odometry``.
-        imu: ``typical``, ``ideal``, or an ``ImuConfig``.
+        imu: ``typical``, ``drifting``, ``ideal``, or an ``ImuConfig``.
         render_mode: ``rgb_array`` or None; for ``human``, ``gymnasium.make`` shows these
             pictures in a window (needs pygame).
         camera: What ``render`` looks through: ``chase``, ``portrait`` or ``top``.

@@ -45,6 +45,8 @@ class EpisodeConfig:
     odometry_yaw: Literal["encoders", "imu"] = "imu"
     """Where odometry takes its yaw from: imu as the robot's firmware does, or encoders as the
     thesis has it."""
+    imu: str = "typical"
+    """IMU errors: typical, drifting (a gyroscope zeroed in whole steps) or ideal."""
     lidar: str = "datasheet"
     """Lidar noise: datasheet, worst_case, measured or ideal."""
     resolution: float = 0.01
@@ -139,6 +141,7 @@ def run_episode(
         lidar=config.lidar,
         odometry=config.odometry,
         odometry_yaw=config.odometry_yaw,
+        imu=config.imu,
         max_episode_steps=steps,
     )
     try:

@@ -5,6 +5,7 @@ is sent to a reachable place from which the frontier can be seen, and what such 
 what the lidar would newly see from it, by ray casting (Gonzalez-Banos and Latombe 2002).
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -29,6 +30,8 @@ class ViewpointConfig:
     min_share_per_metre: float = 0.0006
     """Nor is one that would show less than this share of the known floor more for every metre of
     the way [1/m]: 10 m of way for 0.6 % of the map."""
+    always_worth: float = 1.0
+    """One that would show this much is worth any way [m2]: behind it may lie a room."""
     view_distances: tuple[float, ...] = (0.5, 1.0)
     """How far from a frontier its viewpoints may lie [m]."""
     view_clearance: float = 0.14
@@ -138,10 +141,12 @@ class ViewpointFinder:
         self, field: CostField, frontier: Frontier, places: _Places, per_metre: float
     ) -> list[Viewpoint]:
         """The places whose gain pays for their way, at ``per_metre`` [m2/m]."""
+        config = self.config
         viewpoints = []
         for place, gain in places:
             cost = field.cost_at(place)
-            if gain >= self.config.min_gain + per_metre * cost:
+            enough = min(config.min_gain + per_metre * cost, config.always_worth)
+            if math.isfinite(cost) and gain >= enough:
                 viewpoints.append(Viewpoint(place=place, frontier=frontier, gain=gain, cost=cost))
         return viewpoints
 

@@ -104,7 +104,7 @@ def test_a_config_that_makes_no_episode_is_refused(wrong: dict[str, float]) -> N
         EpisodeConfig(**wrong)
 
 
-@pytest.mark.parametrize("field", ["mapper", "navigator", "odometry", "lidar"])
+@pytest.mark.parametrize("field", ["mapper", "navigator", "odometry", "lidar", "imu"])
 def test_an_unknown_name_is_refused_with_the_known_ones(field: str) -> None:
     with pytest.raises(TestbedError, match=r"nonsense.*(must be|one of)"):
         run_episode(EpisodeConfig(**{field: "nonsense"}), plan=TINY_ROOM)

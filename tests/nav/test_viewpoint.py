@@ -72,7 +72,9 @@ def test_a_crumb_far_away_is_not_worth_the_way_that_a_near_one_is() -> None:
     costmap = costmap_of(grid_from_text(ROOM_WITH_UNKNOWN_EAST))
     frontiers = find_frontiers(costmap, FrontierConfig())
     nothing = VisitedPlaces().on(costmap)
-    dear = ViewpointFinder(ViewpointConfig(min_share_per_metre=5.0))
+    dear = ViewpointFinder(ViewpointConfig(min_share_per_metre=5.0, always_worth=100.0))
     far, near = np.array([0.3, 1.0]), HERE
     assert dear.find(CostField.around(costmap, far), frontiers, nothing, far) == []
     assert dear.find(CostField.around(costmap, near), frontiers, nothing, near)
+    never_left = ViewpointFinder(ViewpointConfig(min_share_per_metre=5.0, always_worth=1.0))
+    assert never_left.find(CostField.around(costmap, far), frontiers, nothing, far)
