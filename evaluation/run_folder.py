@@ -70,8 +70,9 @@ def write_run(episode: Episode, folder: Path) -> dict[str, Any]:
 def title_of(result: dict[str, Any]) -> str:
     """One line that says what a picture of a run shows."""
     f1 = result["f1_5cm"]
+    world = Path(result["world"]).stem
     return (
-        f"{Path(result['world']).stem}, {result['mapper']}, seed {result['seed']}: {result['stop_reason']} "
+        f"{world}, {result['mapper']}, seed {result['seed']}: {result['stop_reason']} "
         f"after {result['sim_time_s']:.0f} s, coverage {result['coverage']:.3f}, "
         f"F1(5 cm) {'-' if f1 is None else format(f1, '.3f')}"
     )

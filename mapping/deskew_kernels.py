@@ -76,6 +76,20 @@ def aim(
 
 
 @njit(cache=True)
+def bounds(
+    origins: NDArray[np.float64], ends: NDArray[np.float64]
+) -> tuple[float, float, float, float]:
+    """Left, right, bottom and top of points ``(n, 2)``, n >= 1, and as many others."""
+    left = right = origins[0, 0]
+    bottom = top = origins[0, 1]
+    for points in (origins, ends):
+        for i in range(len(points)):
+            left, right = min(left, points[i, 0]), max(right, points[i, 0])
+            bottom, top = min(bottom, points[i, 1]), max(top, points[i, 1])
+    return left, right, bottom, top
+
+
+@njit(cache=True)
 def _wrap(angle: float) -> float:
     """The same angle in (-pi, pi]."""
     return math.pi - (math.pi - angle) % (2.0 * math.pi)

@@ -106,7 +106,9 @@ class OccupancyGrid:
 
         Cells keep their places in the world exactly: the origin moves by whole cells.
         """
-        if not self.config.grows:
+        west, east, south, north = self.extent
+        inside = west <= left and right < east and south <= bottom and top < north
+        if inside or not self.config.grows:
             return
         if not np.all(np.isfinite([left, right, bottom, top])):
             raise TestbedError(f"grid box: {left, right, bottom, top}; must be finite")

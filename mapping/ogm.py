@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mapping.burger import LIDAR_POSE_BASE, LIDAR_RANGE_MAX
-from mapping.deskew_kernels import aim
+from mapping.deskew_kernels import aim, bounds
 from mapping.errors import TestbedError
 from mapping.grid import GridConfig, OccupancyGrid
 from mapping.hit_cells import hit_cells, raise_to, raised_values
@@ -108,14 +108,9 @@ class Ogm(OdometryMapper):
             scan.angles[beams.indices],
             beams.lengths + BEHIND_CELLS * self.grid.resolution,
         )
-        self._cover(np.concatenate((origins, ends)))
+        self.grid.cover(*bounds(origins, ends))
         self._update(beams, origins, directions, ends, scan.angle_increment)
         return True
-
-    def _cover(self, points: NDArray[np.float64]) -> None:
-        """Let the grid grow over all that the beams passed."""
-        (left, bottom), (right, top) = points.min(axis=0), points.max(axis=0)
-        self.grid.cover(float(left), float(right), float(bottom), float(top))
 
     def _update(
         self,

@@ -37,9 +37,10 @@ def run(arguments: list[str]) -> int:
 
 def summary(result: dict[str, Any]) -> str:
     """What came of a run, in a few lines."""
+    world = Path(result["world"]).stem
     return "\n".join(
         (
-            f"{Path(result['world']).stem}: {result['stop_reason']} after {result['sim_time_s']:.0f} s "
+            f"{world}: {result['stop_reason']} after {result['sim_time_s']:.0f} s "
             f"simulated, {result['wall_time_s']:.1f} s real "
             f"({result['real_time_factor']:.0f}x real time)",
             f"  coverage {_shown(result['coverage'])}   f1_5cm {_shown(result['f1_5cm'])}   "

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mapping.deskew_kernels import aim, interpolate
+from mapping.deskew_kernels import aim, bounds, interpolate
 from mapping.geometry import compose, wrap_to_pi
 
 
@@ -58,3 +58,6 @@ def test_beams_start_point_and_end_as_composed_poses_say(seed: int) -> None:
     assert origins == pytest.approx(sensors[:, :2])
     assert directions == pytest.approx(np.column_stack((np.cos(pointing), np.sin(pointing))))
     assert ends == pytest.approx(origins + reach[:, None] * directions)
+    points = np.concatenate((origins, ends))
+    (left, bottom), (right, top) = points.min(axis=0), points.max(axis=0)
+    assert bounds(origins, ends) == (left, right, bottom, top)
