@@ -1,7 +1,7 @@
 """Runs one episode: an agent drives the Gymnasium environment until it is done or out of time."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from time import perf_counter
 from typing import Any, Literal
 
@@ -15,6 +15,7 @@ from envs.worlds import load_world
 from mapping.burger import LIDAR_RANGE_MAX, MAX_LINEAR_SPEED
 from mapping.coverage import CoverageMeter
 from mapping.errors import TestbedError
+from mapping.geometry import Pose
 from mapping.grid import OccupancyGrid
 from mapping.mappers import make_mapper
 from mapping.messages import ODOMETRY_COLUMNS
@@ -66,14 +67,38 @@ class EpisodeConfig:
             raise TestbedError(f"resolution: {self.resolution} m; must be 0.002 to 0.5")
 
 
-@dataclass(slots=True, kw_only=True)
 class Track:
     """Where the robot was, believed to be and said to be, a row per control period."""
 
-    stamps: list[float] = field(default_factory=list)
-    pose_map: list[NDArray[np.float64]] = field(default_factory=list)
-    pose_world: list[NDArray[np.float64]] = field(default_factory=list)
-    pose_odom: list[NDArray[np.float64]] = field(default_factory=list)
+    def __init__(self) -> None:
+        self._rows: list[tuple[float, Pose, Pose, Pose]] = []
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    def note(self, stamp: float, pose_map: Pose, pose_world: Pose, pose_odom: Pose) -> None:
+        """Add one row, whole or not at all: Ctrl-C may come at any moment."""
+        self._rows.append((stamp, pose_map.copy(), pose_world.copy(), pose_odom.copy()))
+
+    @property
+    def stamps(self) -> NDArray[np.float64]:
+        """Times ``(n,)`` [s]."""
+        return np.array([row[0] for row in self._rows])
+
+    @property
+    def pose_map(self) -> Pose:
+        """What the mapper believed, in the map frame ``(n, 3)``."""
+        return np.array([row[1] for row in self._rows])
+
+    @property
+    def pose_world(self) -> Pose:
+        """The truth, in the world frame ``(n, 3)``."""
+        return np.array([row[2] for row in self._rows])
+
+    @property
+    def pose_odom(self) -> Pose:
+        """What odometry said, in the frame where the robot started ``(n, 3)``."""
+        return np.array([row[3] for row in self._rows])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -86,8 +111,6 @@ class Episode:
     grid: OccupancyGrid
     track: Track
     stop_reason: str
-    sim_time: float
-    """Simulated time at the end [s]."""
     wall_time: float
     """Wall time of the loop [s], without set-up, scoring and showing."""
     contacts: int
@@ -102,6 +125,11 @@ class Episode:
     navigator_seconds: NDArray[np.float64]
     """Wall time of each command ``(n,)`` [s]."""
     dropped_frontiers: tuple[DroppedFrontier, ...]
+
+    @property
+    def sim_time(self) -> float:
+        """Simulated time at the end [s]: when coverage was measured last."""
+        return float(self.coverage_times[-1])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -193,23 +221,23 @@ def _drive(
             if truncated:
                 stop_reason = TIME_LIMIT
     except KeyboardInterrupt:
+        if len(track) == 0:
+            raise  # there is nothing to keep yet
         stop_reason = INTERRUPTED
     wall_time = perf_counter() - started - telling
-    time = float(observation["time"][0])
-    coverages.append((time, meter.measure(agent.mapper.grid)))
+    coverages.append((float(observation["time"][0]), meter.measure(agent.mapper.grid)))
     times, values = np.array(coverages).T
     return Episode(
         config=config,
         plan=plan,
         truth=truth,
-        grid=agent.mapper.grid,
         track=track,
         stop_reason=stop_reason,
-        sim_time=time,
         wall_time=wall_time,
         contacts=int(info["contacts"]),
         coverage_times=times,
         coverages=values,
+        grid=agent.mapper.grid,
         map_updates=agent.mapper.updates,
         scans_dropped=agent.mapper.scans_dropped,
         map_update_seconds=np.array(agent.map_update_seconds),
@@ -227,10 +255,9 @@ def _changed(agent: MappingAgent) -> tuple[float, float, float, float]:
 
 def _note(track: Track, observation: Any, info: dict[str, Any], agent: MappingAgent) -> None:
     newest = observation["odometry"][-1]
-    track.stamps.append(float(observation["time"][0]))
-    track.pose_map.append(agent.mapper.pose_map.copy())
-    track.pose_world.append(np.array(info["pose_world"]))
-    track.pose_odom.append(newest[ODOMETRY_COLUMNS.index("x") : ODOMETRY_COLUMNS.index("yaw") + 1])
+    pose_odom = newest[ODOMETRY_COLUMNS.index("x") : ODOMETRY_COLUMNS.index("yaw") + 1]
+    time = float(observation["time"][0])
+    track.note(time, agent.mapper.pose_map, info["pose_world"], pose_odom)
 
 
 def _progress(time: float, coverage: float, agent: MappingAgent) -> Progress:

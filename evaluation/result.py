@@ -31,7 +31,7 @@ def result_of(episode: Episode, map_file_kb: float | None) -> dict[str, Any]:
         map_file_kb: Size of the map's image file [kB], None when it was not written.
     """
     config, track = episode.config, episode.track
-    poses_world = np.array(track.pose_world)
+    poses_world = track.pose_world
     return {
         "world": config.world,
         "mapper": config.mapper,
@@ -85,10 +85,10 @@ def _map_scores(episode: Episode) -> dict[str, float | None]:
 
 def _trajectory_scores(track: Track) -> dict[str, float]:
     """Absolute trajectory error, unaligned: map and world share their frame."""
-    stamps = np.array(track.stamps)
+    stamps = track.stamps
     scores = score_trajectory(
-        Trajectory(stamps=stamps, poses=np.array(track.pose_map)),
-        Trajectory(stamps=stamps, poses=np.array(track.pose_world)),
+        Trajectory(stamps=stamps, poses=track.pose_map),
+        Trajectory(stamps=stamps, poses=track.pose_world),
     )
     keys = ("ate_rmse_m", "ate_max_m", "yaw_error_max_deg")
     return {key: getattr(scores, key) for key in keys}

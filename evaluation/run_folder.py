@@ -10,8 +10,6 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from evaluation.episode import Episode, EpisodeConfig
 from evaluation.result import result_of
 from mapping.errors import TestbedError
@@ -47,19 +45,20 @@ def write_run(episode: Episode, folder: Path) -> dict[str, Any]:
     ``result.json``: a folder that has one is complete.
     """
     _make(folder)
+    (folder / "result.json").unlink(missing_ok=True)  # an earlier run's would vouch for this one
     write_json(folder / "config.json", describe(episode.config))
     write_map(folder / "map.yaml", episode.grid)
     track = episode.track
-    stamps = np.array(track.stamps)
-    write_tum(folder / "trajectory.tum", stamps, np.array(track.pose_map))
-    write_tum(folder / "ground_truth.tum", stamps, np.array(track.pose_world))
-    write_tum(folder / "odometry.tum", stamps, np.array(track.pose_odom))
+    stamps = track.stamps
+    write_tum(folder / "trajectory.tum", stamps, track.pose_map)
+    write_tum(folder / "ground_truth.tum", stamps, track.pose_world)
+    write_tum(folder / "odometry.tum", stamps, track.pose_odom)
     map_file_kb = (folder / "map.pgm").stat().st_size / 1e3
     result = result_of(episode, map_file_kb)
     save_map_picture(
         folder / "map.png",
         episode.grid,
-        path=np.array(track.pose_map)[:, :2],
+        path=track.pose_map[:, :2],
         truth=episode.truth,
         title=title_of(result),
     )

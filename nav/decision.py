@@ -12,6 +12,9 @@ from nav.planner import CostField
 from nav.tour import best_order
 from nav.viewpoint import Viewpoint
 
+LEAST_TIME = 1.5
+"""However loyal, no first leg counts for less [s]: half a settling time."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DecisionConfig:
@@ -85,7 +88,7 @@ def _first_leg(
     turn = abs(float(wrap_to_pi(np.arctan2(offset[1], offset[0]) - pose[2])))
     time = config.settling_time + viewpoint.cost / config.speed + turn / config.turn_speed
     if current is not None and viewpoint.is_near(current):
-        time = max(time - config.loyalty, 0.5 * config.settling_time)
+        time = max(time - config.loyalty, LEAST_TIME)
     return time
 
 

@@ -57,7 +57,7 @@ class FrontierExplorer:
         self._safety = Safety(self.config.safety)
         self._recovery = Recovery(self.config.recovery)
         self._scan_points = ScanPoints()
-        self._headway = Headway()
+        self._headway = Headway(self.config.headway)
         self._given_up = GivenUp()
         self._finder = ViewpointFinder(self.config.viewpoint)
         self._visited = VisitedPlaces(self.config.visited_places)
@@ -69,7 +69,7 @@ class FrontierExplorer:
         self._frontiers: list[Frontier] = []
         self._recoveries = self._tries = 0
         self._recovered_at: Pose | None = None
-        self._decided_at = self._glanced_at = -np.inf
+        self._decided_at = self._glanced_at = self._looked_at = -np.inf
         self._elapsed = 0.0
 
     @property
@@ -142,7 +142,7 @@ class FrontierExplorer:
         target = self._target
         if target is None:
             return
-        self._look(grid, pose)
+        self._costmap.glance(grid, pose[:2], self._changed_reach())
         left = gain_at(self._costmap, target.place, self.config.viewpoint)
         if left > self.config.phantom_share * target.gain:
             self._given_up.disappoint(target.frontier, NOTHING_NEW)
@@ -151,19 +151,25 @@ class FrontierExplorer:
         """Whether it is time to decide anew: long ago, or the goal has lost its worth."""
         now = self._scan_points.time
         if self._task is Task.GO_HOME:
-            return now - self._decided_at > 2.0 * self.config.decide_every
+            return now - self._decided_at > self.config.replan_home_every
         if now - self._decided_at > self.config.decide_every:
             return True
         if now - self._glanced_at < self.config.glance_every or self._target is None:
             return False
         self._glanced_at = now
-        self._costmap.glance(grid, pose[:2], self.config.changed_reach)
+        self._costmap.glance(grid, pose[:2], self._changed_reach())
         left = gain_at(self._costmap, self._target.place, self.config.viewpoint)
         return left < self.config.worth_left * self._target.gain
 
     def _look(self, grid: OccupancyGrid, pose: Pose) -> None:
-        self._costmap.refresh(grid, pose[:2], self.config.changed_reach)
+        self._costmap.refresh(grid, pose[:2], self._changed_reach())
         self._former_walls.note(self._costmap, pose[:2])
+        self._looked_at = self._scan_points.time
+
+    def _changed_reach(self) -> float:
+        """How far from the robot the map may have changed since the last look [m]."""
+        since = self._scan_points.time - self._looked_at
+        return self.config.mapped_reach + since * self.config.follower.limits.max_linear
 
     def _path_is_blocked(self) -> bool:
         """Whether the newest returns lie on the next stretch of the path."""

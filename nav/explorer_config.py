@@ -2,10 +2,12 @@
 
 from dataclasses import dataclass
 
+from mapping.burger import LIDAR_RANGE_MAX
 from nav.costmap import CostmapConfig
 from nav.decision import DecisionConfig
 from nav.former_walls import FormerWallsConfig
 from nav.frontier import FrontierConfig
+from nav.headway import HeadwayConfig
 from nav.path_follower import FollowerConfig
 from nav.recovery import RecoveryConfig
 from nav.safety import SafetyConfig
@@ -25,19 +27,23 @@ class ExplorerConfig:
     decision: DecisionConfig = DecisionConfig()
     follower: FollowerConfig = FollowerConfig()
     safety: SafetyConfig = SafetyConfig()
+    headway: HeadwayConfig = HeadwayConfig()
     recovery: RecoveryConfig = RecoveryConfig()
     first_look: float = 1.0
     """Time to stand and look before the first decision [s]: a mapper may want several scans."""
     decide_every: float = 4.0
-    """Longest time between two decisions while driving [s]."""
+    """Longest time between two decisions while exploring [s]."""
+    replan_home_every: float = 8.0
+    """Longest time between two plans of the way home [s]."""
     glance_every: float = 1.0
     """How often the goal's worth is looked at while driving [s]."""
     phantom_share: float = 0.6
     """Share of the promised gain that, still promised on arrival, makes the promise a phantom."""
     worth_left: float = 0.35
     """Share of the promised gain below which a goal is left for a better one."""
-    changed_reach: float = 4.2
-    """How far from the robot the map may have changed since the last look [m]."""
+    mapped_reach: float = LIDAR_RANGE_MAX + 0.3
+    """How far from itself the robot may change the map [m]: the lidar's range, and what a scan and
+    a drawn wall add to it."""
     arrived: float = 0.12
     """Distance to a viewpoint at which it is reached [m]."""
     home_tolerance: float = 0.08

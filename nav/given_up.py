@@ -11,6 +11,9 @@ from nav.navigator import DroppedFrontier
 SAME_PLACE = 0.35
 """A frontier this close to one that was given up counts as that one [m]."""
 
+GIVEN_UP, DISAPPOINTED = 1.0, 0.5
+"""What counts as once given up: two disappointments do."""
+
 
 @dataclass(slots=True)
 class _Record:
@@ -28,11 +31,11 @@ class GivenUp:
 
     def give_up(self, frontier: Frontier, reason: str) -> None:
         """Leave a frontier alone, for now or, after its second chance, for good."""
-        self._add(frontier, reason, 1.0)
+        self._add(frontier, reason, GIVEN_UP)
 
     def disappoint(self, frontier: Frontier, reason: str) -> None:
         """Note that a viewpoint of it was of no use; the second such leads to giving up."""
-        self._add(frontier, reason, 0.5)
+        self._add(frontier, reason, DISAPPOINTED)
 
     def holds(self, frontier: Frontier) -> bool:
         """Whether a frontier is to be left alone now."""
@@ -57,7 +60,7 @@ class GivenUp:
                 reason=record.reason,
             )
             for frontier, record in found
-            if record is not None and record.times >= 1.0
+            if record is not None and record.times >= GIVEN_UP
         )
 
     def _add(self, frontier: Frontier, reason: str, times: float) -> None:

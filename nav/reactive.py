@@ -24,6 +24,8 @@ class ReactiveConfig:
     """Clear way ahead below which the robot stops and turns [m from the lidar]."""
     slow_distance: float = 0.8
     """Clear way ahead below which it slows down [m from the lidar]."""
+    slowest_share: float = 0.2
+    """Share of the top speed that is driven where it is tight ahead."""
     corridor_half_width: float = 0.14
     """Returns ahead count when they lie this close to the line ahead [m]."""
     turn_speed: float = 1.0
@@ -57,7 +59,9 @@ class Reactive:
         if clear > config.clear_to_go or (self._turning == 0.0 and clear > config.stop_distance):
             self._turning = 0.0
             share = (clear - config.stop_distance) / (config.slow_distance - config.stop_distance)
-            return Twist(linear_x=config.limits.max_linear * float(np.clip(share, 0.2, 1.0)))
+            return Twist(
+                linear_x=config.limits.max_linear * float(np.clip(share, config.slowest_share, 1.0))
+            )
         if self._turning == 0.0:
             self._turning = 1.0 if _openness(points, 1.0) >= _openness(points, -1.0) else -1.0
         return Twist(angular_z=self._turning * config.turn_speed)

@@ -9,6 +9,9 @@ from mapping.geometry import Pose, wrap_to_pi
 from mapping.messages import Twist
 from nav.spot_turn import SpotTurn
 
+BACKING_PATIENCE = 1.5
+"""Backing off may take this many times as long as it would unhindered."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RecoveryConfig:
@@ -65,7 +68,7 @@ class Recovery:
         if self._start is None:
             return None
         self._elapsed += period
-        backing_time = 1.5 * self._distance / config.back_off_speed
+        backing_time = BACKING_PATIENCE * self._distance / config.back_off_speed
         if self._elapsed > config.time_limit + backing_time:
             self._start = None
             return None
@@ -83,7 +86,17 @@ class Recovery:
 
 
 def open_heading(pose: Pose, points: NDArray[np.float64], view: float, sectors: int = 24) -> float:
-    """The direction [rad, map frame] of the middle of the widest run of open sectors."""
+    """The direction [rad, map frame] with the most space around it.
+
+    Space is what the nearest points leave in each sector, summed over a sector and two neighbours
+    on either side (75 degrees); of equals the first counter-clockwise from +x.
+
+    Args:
+        pose: Where the robot is ``(3,)``.
+        points: Obstacle points in the map frame ``(n, 2)`` [m].
+        view: Space beyond this does not count [m].
+        sectors: How many sectors the circle has.
+    """
     offsets = points - pose[:2]
     distances = np.hypot(offsets[:, 0], offsets[:, 1])
     near = distances < view

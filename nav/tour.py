@@ -10,6 +10,11 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+NO_TIME = 1e-9
+"""Keeps a place that the robot stands on from dividing by zero [s]."""
+ROUNDING = 1e-9
+"""A tour better by less than this share is no better: the search must end."""
+
 
 def best_order(
     first_legs: NDArray[np.float64], legs: NDArray[np.float64], weights: NDArray[np.float64]
@@ -55,7 +60,7 @@ def _by_ratio(
         for place in range(count):
             if left[place]:
                 time = first_legs[place] if k == 0 else legs[order[k - 1], place]
-                ratio = weights[place] / (time + 1e-9)
+                ratio = weights[place] / (time + NO_TIME)
                 if ratio > best_ratio:
                     best, best_ratio = place, ratio
         order[k] = best
@@ -88,7 +93,7 @@ def _improve(
                     other = latency(reversed_, first_legs, legs, weights)
                     if other < cost:
                         trial, cost = reversed_, other
-                if cost < best * (1.0 - 1e-9):
+                if cost < best * (1.0 - ROUNDING):
                     order[:] = trial
                     best = cost
                     improved = True

@@ -2,6 +2,7 @@
 
 import json
 from pathlib import Path
+from unittest.mock import patch
 
 import numpy as np
 import pytest
@@ -80,6 +81,23 @@ def test_ctrl_c_ends_an_episode_and_keeps_the_map(tmp_path: Path) -> None:
     episode = run_episode(SHORT, stop, plan=TINY_ROOM)
     assert episode.stop_reason == "interrupted"
     assert write_run(episode, tmp_path)["coverage"] > 0.1
+
+
+def test_ctrl_c_before_the_first_step_leaves_nothing_to_keep() -> None:
+    agent_acts = patch("nav.agent.MappingAgent.act", side_effect=KeyboardInterrupt)
+    with agent_acts, pytest.raises(KeyboardInterrupt):
+        run_episode(SHORT, plan=TINY_ROOM)
+
+
+def test_a_run_that_cannot_be_written_whole_leaves_no_earlier_result_to_vouch_for_it(
+    tmp_path: Path,
+) -> None:
+    episode = run_episode(EpisodeConfig(time_limit=2.0), plan=TINY_ROOM)
+    write_run(episode, tmp_path)
+    broken = patch("evaluation.run_folder.write_map", side_effect=TestbedError("disk full"))
+    with broken, pytest.raises(TestbedError):
+        write_run(episode, tmp_path)
+    assert not (tmp_path / "result.json").exists()
 
 
 def test_a_navigator_without_a_plan_runs_out_its_time_without_contact() -> None:
