@@ -54,6 +54,8 @@ class OccupancyGrid:
         self.config = config or GridConfig()
         self.resolution = self.config.resolution
         self.origin = np.array(self.config.origin, dtype=np.float64)
+        self.redraws = 0
+        """How often a mapper has drawn the whole map anew; after that, everything may differ."""
         self.log_odds: NDArray[np.float32] = np.zeros(
             (self.config.rows, self.config.columns), dtype=np.float32
         )
@@ -126,6 +128,7 @@ class OccupancyGrid:
         """A grid of its own with the same cells, for drawing while mapping goes on."""
         twin = OccupancyGrid.__new__(OccupancyGrid)
         twin.config, twin.resolution = self.config, self.resolution
+        twin.redraws = self.redraws
         twin.origin, twin.log_odds = self.origin.copy(), self.log_odds.copy()
         return twin
 

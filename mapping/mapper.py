@@ -6,6 +6,7 @@ from typing import Protocol
 from mapping.geometry import Pose
 from mapping.grid import OccupancyGrid
 from mapping.messages import Imu, LaserScan, Odometry
+from mapping.pose_history import PoseHistory
 
 
 class Mapper(Protocol):
@@ -26,6 +27,13 @@ class Mapper(Protocol):
     @property
     def scans_dropped(self) -> int:
         """How many new scans did not: gated, unusable, or without a pose for their time."""
+
+    @property
+    def trajectory(self) -> PoseHistory:
+        """Where base_footprint was at the first beam of every scan with a pose, as believed now.
+
+        A mapper that corrects the past gives corrected poses.
+        """
 
     def update(
         self, scan: LaserScan | None, odometry: Sequence[Odometry], imu: Sequence[Imu] = ()

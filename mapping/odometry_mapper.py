@@ -11,6 +11,7 @@ from mapping.errors import TestbedError
 from mapping.geometry import Pose, compose
 from mapping.grid import OccupancyGrid
 from mapping.messages import Imu, LaserScan, Odometry
+from mapping.pose_history import PoseHistory
 
 
 class OdometryMapper(ABC):
@@ -29,6 +30,7 @@ class OdometryMapper(ABC):
         self.track = OdometryTrack()
         self.pose_map: Pose = self.start_pose_map
         """The newest pose in the map frame ``(3,)``; the start pose before any odometry."""
+        self.trajectory = PoseHistory()
         self._newest_scan = -np.inf
 
     def update(
@@ -42,6 +44,9 @@ class OdometryMapper(ABC):
             return
         if scan.stamp > self._newest_scan:
             self._newest_scan = scan.stamp
+            pose_odom = self.track.poses_at([scan.stamp])
+            if pose_odom is not None:
+                self.trajectory.add(scan.stamp, compose(self.start_pose_map, pose_odom[0]))
             if self.draw(scan):
                 self.updates += 1
                 return
