@@ -160,6 +160,21 @@ Part = Wall | Box | Cylinder | Polygon
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Route:
+    """Places to drive through in order, for runs that are to be repeated."""
+
+    name: str
+    points: tuple[Point, ...]
+    """The places [m]."""
+
+    def __post_init__(self) -> None:
+        """Refuse a route that leads nowhere."""
+        if not self.points:
+            raise TestbedError("points: none; a route needs one at least")
+        _check_points("points", self.points)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class FloorPlan:
     """Everything that stands on the floor, and the pose the robot starts from."""
 
@@ -172,6 +187,8 @@ class FloorPlan:
     polygons: tuple[Polygon, ...] = ()
     description: str = ""
     """One line that says what place this is."""
+    routes: tuple[Route, ...] = ()
+    """Ways through the place that have a name."""
 
     def __post_init__(self) -> None:
         """Refuse a plan with nothing in it, or where the robot does not fit at its start."""
@@ -182,6 +199,10 @@ class FloorPlan:
         _check_points("start", (self.start[:2],))
         _check_finite("start yaw", self.start[2], "rad")
         _check_start(self)
+        names = [route.name for route in self.routes]
+        for name in names:
+            if names.count(name) > 1:
+                raise TestbedError(f"routes: {name!r} stands twice; names must differ")
 
     @property
     def bounds(self) -> tuple[float, float, float, float]:

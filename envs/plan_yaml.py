@@ -14,10 +14,13 @@
       - {center: [3, 1], radius: 0.15, height: 0.5}
     polygons:
       - {vertices: [[2, 2], [3, 2], [2.5, 2.8]], height: 1.0}
+    routes:
+      there_and_back: [[3.5, 0.5], [0.5, 0.5]]
 
 ``name`` and ``start`` must stand, and one wall, box, cylinder or polygon at least. Of a part,
 ``points``, ``center``, ``size``, ``radius`` and ``vertices`` must stand; the rest has the defaults
-of ``Wall``, ``Box``, ``Cylinder`` and ``Polygon``. Lengths are metres; ``yaw`` is in radians, and
+of ``Wall``, ``Box``, ``Cylinder`` and ``Polygon``. Routes are places to drive through, by a name;
+``burger explore --navigator waypoints`` takes it. Lengths are metres; ``yaw`` is in radians, and
 ``yaw_deg`` in degrees may stand in its place.
 """
 
@@ -31,7 +34,7 @@ from typing import Any, NoReturn, TypeGuard
 
 import yaml
 
-from envs.floor_plan import Box, Cylinder, FloorPlan, Part, Point, Polygon, Wall
+from envs.floor_plan import Box, Cylinder, FloorPlan, Part, Point, Polygon, Route, Wall
 from mapping.errors import TestbedError
 from mapping.io.atomic import write_atomically
 
@@ -77,6 +80,11 @@ def plan_to_yaml(plan: FloorPlan) -> str:
         if parts:
             lines.append(f"{kind}:")
             lines.extend(f"  - {_flow(_as_lists(dataclasses.asdict(part)))}" for part in parts)
+    if plan.routes:
+        lines.append("routes:")
+        lines.extend(
+            f"  {_flow(route.name)}: {_flow(_as_lists(route.points))}" for route in plan.routes
+        )
     return "\n".join(lines) + "\n"
 
 
@@ -86,7 +94,7 @@ def plan_from_fields(fields: dict[str, Any]) -> FloorPlan:
     Raises:
         TestbedError: A key is unknown or missing, or its value is not what is allowed.
     """
-    _check_keys(fields, needed=("name", "start"), allowed=("description", *_PARTS))
+    _check_keys(fields, needed=("name", "start"), allowed=("description", *_PARTS, "routes"))
     return FloorPlan(
         name=_text("name", fields["name"]),
         description=_text("description", fields.get("description", "")),
@@ -95,6 +103,7 @@ def plan_from_fields(fields: dict[str, Any]) -> FloorPlan:
         boxes=_parts(fields, "boxes"),
         cylinders=_parts(fields, "cylinders"),
         polygons=_parts(fields, "polygons"),
+        routes=_routes(fields.get("routes")),
     )
 
 
@@ -169,6 +178,21 @@ def _part(kind: str, fields: object) -> Part:
     _check_keys(fields, needed=tuple(needed), allowed=(*optional, *degrees))
     values = _with_radians(fields)
     return make(**{key: readers[key](key, value) for key, value in values.items()})
+
+
+def _routes(value: object) -> tuple[Route, ...]:
+    """All routes, of a mapping of names to points."""
+    if value is None:
+        return ()
+    if not isinstance(value, dict):
+        _refuse("routes", value, "names with lists of [x, y] [m]")
+    routes = []
+    for name, points in value.items():
+        try:
+            routes.append(Route(name=_text("name", name), points=_points("points", points)))
+        except TestbedError as error:
+            raise TestbedError(f"routes: {name}: {error}") from None
+    return tuple(routes)
 
 
 def _start(value: object) -> tuple[float, float, float]:

@@ -7,11 +7,12 @@ from typing import Any, Literal
 
 import gymnasium
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from envs.floor_plan import FloorPlan
 from envs.truth import truth_of_plan
 from envs.worlds import load_world
+from evaluation.recorder import Recorder
 from mapping.burger import LIDAR_RANGE_MAX, MAX_LINEAR_SPEED
 from mapping.coverage import CoverageMeter
 from mapping.errors import TestbedError
@@ -19,10 +20,12 @@ from mapping.geometry import Pose
 from mapping.grid import OccupancyGrid
 from mapping.mappers import make_mapper
 from mapping.messages import ODOMETRY_COLUMNS
+from mapping.pose_history import PoseHistory
 from mapping.truth import TruthMap
 from nav.agent import MappingAgent
 from nav.navigator import RUNNING, DroppedFrontier
 from nav.navigators import make_navigator
+from nav.route import parse_route
 
 ENVIRONMENT = "envs:TurtleBot3Burger-v0"
 CONTROL_PERIOD = 0.1
@@ -38,9 +41,12 @@ class EpisodeConfig:
     """A built-in world by name, or a floor plan file: YAML, map_server YAML, HouseExpo JSON, text
     maze."""
     mapper: str = "ogm"
-    """ogm or occgridmapp."""
+    """graph, scan_match, ogm or occgridmapp."""
     navigator: str = "frontier"
-    """frontier or reactive."""
+    """frontier, reactive, or waypoints: through given places."""
+    waypoints: str = ""
+    """Places for the navigator waypoints: 'x,y x,y ...' in metres, or the name of a route of the
+    world, such as there_and_back in lim_hallway."""
     odometry: str = "typical"
     """Wheel and odometry errors: ideal, typical, poor, or truth (no error at all)."""
     odometry_yaw: Literal["encoders", "imu"] = "imu"
@@ -71,34 +77,36 @@ class Track:
     """Where the robot was, believed to be and said to be, a row per control period."""
 
     def __init__(self) -> None:
-        self._rows: list[tuple[float, Pose, Pose, Pose]] = []
+        self._map, self._world, self._odom = PoseHistory(), PoseHistory(), PoseHistory()
 
     def __len__(self) -> int:
-        return len(self._rows)
+        return len(self._odom)
 
     def note(self, stamp: float, pose_map: Pose, pose_world: Pose, pose_odom: Pose) -> None:
-        """Add one row, whole or not at all: Ctrl-C may come at any moment."""
-        self._rows.append((stamp, pose_map.copy(), pose_world.copy(), pose_odom.copy()))
+        """Add one row; it counts when its last part is in, so Ctrl-C may come at any moment."""
+        self._map.add(stamp, pose_map)
+        self._world.add(stamp, pose_world)
+        self._odom.add(stamp, pose_odom)
 
     @property
     def stamps(self) -> NDArray[np.float64]:
         """Times ``(n,)`` [s]."""
-        return np.array([row[0] for row in self._rows])
+        return self._odom.stamps
 
     @property
     def pose_map(self) -> Pose:
-        """What the mapper believed, in the map frame ``(n, 3)``."""
-        return np.array([row[1] for row in self._rows])
+        """What the mapper believed at the time, in the map frame ``(n, 3)``."""
+        return self._map.poses[: len(self)]
 
     @property
     def pose_world(self) -> Pose:
         """The truth, in the world frame ``(n, 3)``."""
-        return np.array([row[2] for row in self._rows])
+        return self._world.poses[: len(self)]
 
     @property
     def pose_odom(self) -> Pose:
         """What odometry said, in the frame where the robot started ``(n, 3)``."""
-        return np.array([row[3] for row in self._rows])
+        return self._odom.poses
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -110,6 +118,8 @@ class Episode:
     truth: TruthMap
     grid: OccupancyGrid
     track: Track
+    trajectory: PoseHistory
+    """Where the mapper, in the end, takes the robot to have been, a row per scan."""
     stop_reason: str
     wall_time: float
     """Wall time of the loop [s], without set-up, scoring and showing."""
@@ -125,6 +135,8 @@ class Episode:
     navigator_seconds: NDArray[np.float64]
     """Wall time of each command ``(n,)`` [s]."""
     dropped_frontiers: tuple[DroppedFrontier, ...]
+    recorder: Recorder | None = None
+    """What kept the run's messages, if they were to be kept."""
 
     @property
     def sim_time(self) -> float:
@@ -148,6 +160,7 @@ def run_episode(
     on_progress: Callable[[Progress], None] | None = None,
     *,
     plan: FloorPlan | None = None,
+    recorder: Recorder | None = None,
 ) -> Episode:
     """Run one episode to its end; Ctrl-C ends it early and keeps what there is.
 
@@ -155,6 +168,7 @@ def run_episode(
         config: What to run.
         on_progress: Called once a simulated second.
         plan: A floor plan made in code, used in place of ``config.world``.
+        recorder: Notes the messages of every control period.
 
     Raises:
         TestbedError: If the config names something that does not exist or cannot be used.
@@ -173,7 +187,7 @@ def run_episode(
         max_episode_steps=steps,
     )
     try:
-        return _drive(config, plan, truth, agent, environment, on_progress)
+        return _drive(config, plan, truth, agent, environment, on_progress, recorder)
     finally:
         environment.close()
 
@@ -185,7 +199,22 @@ def make_agent(config: EpisodeConfig, plan: FloorPlan) -> MappingAgent:
         start_pose_map=plan.start,
         resolution=config.resolution,
     )
-    return MappingAgent(mapper, make_navigator(config.navigator))
+    return MappingAgent(mapper, make_navigator(config.navigator, _places(config, plan)))
+
+
+def _places(config: EpisodeConfig, plan: FloorPlan) -> ArrayLike | None:
+    """The waypoints that a config gives or names, None when it gives none."""
+    if not config.waypoints:
+        return None
+    routes = {route.name: route.points for route in plan.routes}
+    if config.waypoints in routes:
+        return routes[config.waypoints]
+    if "," not in config.waypoints:
+        raise TestbedError(
+            f"waypoints: {config.waypoints!r}; must be x,y x,y ... or a route of the world "
+            f"({', '.join(routes) or 'it has none'})"
+        )
+    return parse_route(config.waypoints)
 
 
 def _drive(
@@ -195,6 +224,7 @@ def _drive(
     agent: MappingAgent,
     environment: gymnasium.Env[Any, Any],
     on_progress: Callable[[Progress], None] | None,
+    recorder: Recorder | None,
 ) -> Episode:
     meter = CoverageMeter(truth)
     track = Track()
@@ -205,6 +235,8 @@ def _drive(
     try:
         while stop_reason == RUNNING:
             action = agent.act(observation)
+            if recorder is not None:
+                recorder.note(observation, action, agent.mapper.pose_map, agent.mapper.grid)
             _note(track, observation, info, agent)
             time = float(observation["time"][0])
             stop_reason = agent.navigator.status
@@ -232,6 +264,7 @@ def _drive(
         plan=plan,
         truth=truth,
         track=track,
+        trajectory=agent.mapper.trajectory,
         stop_reason=stop_reason,
         wall_time=wall_time,
         contacts=int(info["contacts"]),
@@ -240,9 +273,10 @@ def _drive(
         grid=agent.mapper.grid,
         map_updates=agent.mapper.updates,
         scans_dropped=agent.mapper.scans_dropped,
-        map_update_seconds=np.array(agent.map_update_seconds),
-        navigator_seconds=np.array(agent.navigator_seconds),
+        map_update_seconds=np.array(agent.map_update_seconds, dtype=np.float64),
+        navigator_seconds=np.array(agent.navigator_seconds, dtype=np.float64),
         dropped_frontiers=agent.navigator.dropped_frontiers,
+        recorder=recorder,
     )
 
 

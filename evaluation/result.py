@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from evaluation.clearance import min_clearance
-from evaluation.episode import Episode, Track
-from mapping.compare import score_map
-from mapping.trajectory import Trajectory, path_length, score_trajectory
+from evaluation.episode import Episode
+from mapping.compare import MapScores, score_map
+from mapping.trajectory import Trajectory, path_length
+from mapping.trajectory_scores import score_relative, score_trajectory
 
 TIMING_KEYS = (
     "wall_time_s",
@@ -46,15 +47,19 @@ def result_of(episode: Episode, map_file_kb: float | None) -> dict[str, Any]:
         "path_length_m": path_length(poses_world),
         "contacts": episode.contacts,
         "min_clearance_m": min_clearance(poses_world, episode.plan.solids()),
-        **_map_scores(episode),
-        **_trajectory_scores(track),
+        **map_scores(score_map(episode.grid, episode.truth)),
+        **trajectory_scores(
+            Trajectory(stamps=episode.trajectory.stamps, poses=episode.trajectory.poses),
+            Trajectory(stamps=track.stamps, poses=track.pose_map),
+            Trajectory(stamps=track.stamps, poses=poses_world),
+        ),
         "map_updates": episode.map_updates,
         "scans_dropped": episode.scans_dropped,
-        "map_update_ms_p50": _percentile_ms(episode.map_update_seconds, 50),
-        "map_update_ms_p99": _percentile_ms(episode.map_update_seconds, 99),
+        "map_update_ms_p50": percentile_ms(episode.map_update_seconds, 50),
+        "map_update_ms_p99": percentile_ms(episode.map_update_seconds, 99),
         "map_update_rate_hz": episode.map_updates / episode.sim_time,
         "map_file_kb": map_file_kb,
-        "peak_rss_mb": _peak_rss_mb(),
+        "peak_rss_mb": peak_rss_mb(),
         "home_distance_m": float(np.hypot(*(poses_world[-1, :2] - poses_world[0, :2]))),
         "dropped_frontiers": [asdict(frontier) for frontier in episode.dropped_frontiers],
     }
@@ -69,8 +74,8 @@ def _times_of_coverage(episode: Episode) -> dict[str, float | None]:
     return times
 
 
-def _map_scores(episode: Episode) -> dict[str, float | None]:
-    scores = asdict(score_map(episode.grid, episode.truth))
+def map_scores(scores: MapScores | None) -> dict[str, float | None]:
+    """The scores of a map, but for its coverage; all None without any."""
     keys = (
         "f1_5cm",
         "f1_10cm",
@@ -80,25 +85,48 @@ def _map_scores(episode: Episode) -> dict[str, float | None]:
         "false_free",
         "wall_thickness_ratio",
     )
-    return {key: scores[key] for key in keys}
+    return {key: None if scores is None else getattr(scores, key) for key in keys}
 
 
-def _trajectory_scores(track: Track) -> dict[str, float]:
-    """Absolute trajectory error, unaligned: map and world share their frame."""
-    stamps = track.stamps
-    scores = score_trajectory(
-        Trajectory(stamps=stamps, poses=track.pose_map),
-        Trajectory(stamps=stamps, poses=track.pose_world),
-    )
-    keys = ("ate_rmse_m", "ate_max_m", "yaw_error_max_deg")
-    return {key: getattr(scores, key) for key in keys}
+def trajectory_scores(
+    corrected: Trajectory, online: Trajectory, truth: Trajectory | None
+) -> dict[str, float | None]:
+    """Errors of a trajectory, unaligned: map and world share their frame.
+
+    Args:
+        corrected: Where the mapper takes the robot to have been, in the end: ``ate_rmse_m``,
+            ``ate_max_m``, ``yaw_error_max_deg``, and per second ``rpe_trans_rmse_m`` and
+            ``rpe_rot_rmse_deg``.
+        online: Where it took it to be at the time: ``ate_online_rmse_m``.
+        truth: The true trajectory; without it, or without poses in its time, all are None.
+    """
+    keys = ("ate_rmse_m", "ate_max_m", "yaw_error_max_deg", "ate_online_rmse_m")
+    scores: dict[str, float | None] = dict.fromkeys((*keys, "rpe_trans_rmse_m", "rpe_rot_rmse_deg"))
+    if truth is None:
+        return scores
+    if _overlap(corrected, truth):
+        absolute, relative = score_trajectory(corrected, truth), score_relative(corrected, truth)
+        scores.update({key: getattr(absolute, key) for key in keys[:3]})
+        if relative is not None:
+            scores["rpe_trans_rmse_m"] = relative.trans_rmse_m
+            scores["rpe_rot_rmse_deg"] = relative.rot_rmse_deg
+    if _overlap(online, truth):
+        scores["ate_online_rmse_m"] = score_trajectory(online, truth).ate_rmse_m
+    return scores
 
 
-def _percentile_ms(seconds: NDArray[np.float64], share: float) -> float | None:
+def _overlap(estimate: Trajectory, truth: Trajectory) -> bool:
+    """Whether a pose of the estimate lies within the truth's time."""
+    first, last = truth.stamps[[0, -1]]
+    return bool(np.any((estimate.stamps >= first) & (estimate.stamps <= last)))
+
+
+def percentile_ms(seconds: NDArray[np.float64], share: float) -> float | None:
+    """The percentile of wall times ``(n,)`` [s], in ms; None when there are none."""
     return round(1e3 * float(np.percentile(seconds, share)), 4) if len(seconds) else None
 
 
-def _peak_rss_mb() -> float:
+def peak_rss_mb() -> float:
     """The most memory this process ever held [MB]; Linux counts in kB, macOS in bytes."""
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     return round(peak / (1e6 if sys.platform == "darwin" else 1e3), 1)

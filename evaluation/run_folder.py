@@ -11,6 +11,8 @@ from pathlib import Path
 from typing import Any
 
 from evaluation.episode import Episode, EpisodeConfig
+from evaluation.recorder import remove_recording
+from evaluation.replay import ReplayConfig
 from evaluation.result import result_of
 from mapping.errors import TestbedError
 from mapping.io.atomic import write_atomically
@@ -18,12 +20,12 @@ from mapping.io.map_server import write_map
 from mapping.io.tum import write_tum
 from mapping.plot import save_map_picture
 
-RECORDED_VERSIONS = ("burger-testbed", "mujoco", "gymnasium", "numpy", "scipy", "numba")
+RECORDED_VERSIONS = ("burger-testbed", "mujoco", "gymnasium", "numpy", "scipy", "numba", "gtsam")
 
 
 @contextmanager
 def run_folder(folder: Path) -> Iterator[None]:
-    """Make sure before a run that its folder can be written; take it away if the run is refused.
+    """Make sure before a run that its folder can be written; take it away if nothing comes of it.
 
     Raises:
         TestbedError: If it is a file, or nothing can be written there.
@@ -32,7 +34,7 @@ def run_folder(folder: Path) -> Iterator[None]:
     _make(folder)
     try:
         yield
-    except TestbedError:
+    except (TestbedError, KeyboardInterrupt):
         if is_new and not any(folder.iterdir()):
             folder.rmdir()
         raise
@@ -41,16 +43,17 @@ def run_folder(folder: Path) -> Iterator[None]:
 def write_run(episode: Episode, folder: Path) -> dict[str, Any]:
     """Write every file of the run folder, each whole or not at all; returns the result.
 
-    ``config.json``, ``map.pgm`` and ``map.yaml``, ``map.png``, the three trajectories, and last
-    ``result.json``: a folder that has one is complete.
+    ``config.json``, ``map.pgm`` and ``map.yaml``, ``map.png``, the three trajectories, of a
+    recorded episode ``log.carmen`` and ``bag/``, and last ``result.json``: a folder that has one
+    is complete.
     """
-    _make(folder)
-    (folder / "result.json").unlink(missing_ok=True)  # an earlier run's would vouch for this one
+    start_run(folder)
     write_json(folder / "config.json", describe(episode.config))
     write_map(folder / "map.yaml", episode.grid)
     track = episode.track
     stamps = track.stamps
-    write_tum(folder / "trajectory.tum", stamps, track.pose_map)
+    trajectory = episode.trajectory
+    write_tum(folder / "trajectory.tum", trajectory.stamps, trajectory.poses)
     write_tum(folder / "ground_truth.tum", stamps, track.pose_world)
     write_tum(folder / "odometry.tum", stamps, track.pose_odom)
     map_file_kb = (folder / "map.pgm").stat().st_size / 1e3
@@ -58,12 +61,26 @@ def write_run(episode: Episode, folder: Path) -> dict[str, Any]:
     save_map_picture(
         folder / "map.png",
         episode.grid,
-        path=track.pose_map[:, :2],
+        path=trajectory.poses[:, :2],
         truth=episode.truth,
         title=title_of(result),
     )
+    if episode.recorder is None:
+        remove_recording(folder)
+    else:
+        episode.recorder.write(folder, episode.grid)
     write_json(folder / "result.json", result)
     return result
+
+
+def start_run(folder: Path) -> None:
+    """Make sure of the folder and take away an earlier run's result: it would vouch for this one.
+
+    Raises:
+        TestbedError: If it is a file, or nothing can be written there.
+    """
+    _make(folder)
+    (folder / "result.json").unlink(missing_ok=True)
 
 
 def title_of(result: dict[str, Any]) -> str:
@@ -77,10 +94,11 @@ def title_of(result: dict[str, Any]) -> str:
     )
 
 
-def describe(config: EpisodeConfig) -> dict[str, Any]:
+def describe(config: EpisodeConfig | ReplayConfig) -> dict[str, Any]:
     """Everything that defines the run: the config, the versions, the commit."""
+    told = asdict(config)
     return {
-        **asdict(config),
+        **{key: str(value) if isinstance(value, Path) else value for key, value in told.items()},
         "versions": {name: version(name) for name in RECORDED_VERSIONS},
         "python": platform.python_version(),
         "git_commit": _git_commit(),

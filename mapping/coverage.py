@@ -22,6 +22,7 @@ class CoverageMeter:
         self._total = int(np.count_nonzero(truth.visible_free))
         rows, columns = truth.shape
         self._known_free = np.zeros((-(-rows // TILE), -(-columns // TILE)), dtype=np.int64)
+        self._redraws = 0
 
     def measure(
         self, grid: OccupancyGrid, window: tuple[float, float, float, float] | None = None
@@ -34,13 +35,15 @@ class CoverageMeter:
         Args:
             grid: The map so far.
             window: Left, right, bottom and top [m] of what may have changed since the last call,
-                such as the robot's position +- the sensor's range; None counts everything anew.
+                such as the robot's position +- the sensor's range; None counts everything anew,
+                and so does a map that was drawn anew since.
         """
         if self._total == 0:
             return 0.0
         rows = nearest_cells(self._truth, grid, axis=1)
         columns = nearest_cells(self._truth, grid, axis=0)
-        tiles = self._tiles(window)
+        tiles = self._tiles(window if grid.redraws == self._redraws else None)
+        self._redraws = grid.redraws
         free_below = np.float32(grid.config.free_below)
         _count(
             self._truth.visible_free,

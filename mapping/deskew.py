@@ -19,6 +19,10 @@ KEEP_S = 0.6
 """Odometry older than this before the newest [s] is forgotten: three turns of the LDS-01, so that
 a scan may come a turn late."""
 
+KEEP_ROWS = 4
+"""So many of the newest rows are kept whatever their age: a log may hold one a scan, seconds apart,
+and a scan may come a few messages late."""
+
 REACH_S = 0.25
 """How far [s] poses are extrapolated: a scan's 0.2 s and one and a half odometry periods."""
 
@@ -47,8 +51,7 @@ class OdometryTrack:
             row = (message.stamp, x, y, yaw, twist.linear_x, twist.angular_z)
             if all(map(isfinite, row)) and (not self._rows or row[0] > self._rows[-1][0]):
                 self._rows.append(row)
-        while self._rows and self._rows[0][0] < self._rows[-1][0] - KEEP_S:
-            self._rows.popleft()
+        forget_old(self._rows)
 
     def poses_at(self, stamps: ArrayLike) -> Pose | None:
         """The poses ``(n, 3)`` at moments ``(n,)`` [s], in the odometry's frame.
@@ -59,12 +62,26 @@ class OdometryTrack:
         Returns:
             None when there is no odometry within REACH_S of every moment.
         """
-        stamps = np.asarray(stamps, dtype=np.float64)
-        if not self._rows or not np.all(np.isfinite(stamps)):
-            return None
-        rows = np.array(self._rows)
-        first, last = rows[0, 0], rows[-1, 0]
-        if stamps.size and (stamps.min() < first - REACH_S or stamps.max() > last + REACH_S):
-            return None
-        poses: Pose = interpolate(rows, stamps)
-        return poses
+        return poses_on(self._rows, stamps)
+
+
+def forget_old(rows: deque[tuple[float, ...]]) -> None:
+    """Drop rows, stamp first, that no scan will ask for any more."""
+    while len(rows) > KEEP_ROWS and rows[0][0] < rows[-1][0] - KEEP_S:
+        rows.popleft()
+
+
+def poses_on(rows: deque[tuple[float, ...]], stamps: ArrayLike) -> Pose | None:
+    """Poses ``(n, 3)`` at moments ``(n,)`` [s] on rows of stamp, x, y, yaw, speed and turn rate.
+
+    Returns:
+        None when a moment is not finite or lies farther than REACH_S outside of the rows.
+    """
+    stamps = np.asarray(stamps, dtype=np.float64)
+    if not rows or not np.all(np.isfinite(stamps)):
+        return None
+    first, last = rows[0][0], rows[-1][0]
+    if stamps.size and (stamps.min() < first - REACH_S or stamps.max() > last + REACH_S):
+        return None
+    poses: Pose = interpolate(np.array(rows), stamps)
+    return poses

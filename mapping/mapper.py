@@ -46,3 +46,6 @@ class Mapper(Protocol):
             odometry: Odometry messages since the last call, oldest first; may be empty.
             imu: IMU messages since the last call, oldest first; may be empty.
         """
+
+    def finish(self) -> None:
+        """Do now what was put off, as the last correction and drawing the map anew."""

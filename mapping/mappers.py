@@ -12,8 +12,13 @@ from mapping.mapper import Mapper
 from mapping.occ_grid_mapp import OccGridMapp, OccGridMappConfig
 from mapping.odometry_mapper import checked_pose
 from mapping.ogm import Ogm, OgmConfig, growing_grid
+from mapping.slam.gmapping import Gmapping, GmappingConfig
+from mapping.slam.graph_slam import GraphConfig, GraphSlam
+from mapping.slam.scan_match import ScanMatch, ScanMatchConfig
 
-Config = TypeVar("Config", OgmConfig, OccGridMappConfig)
+Config = TypeVar(
+    "Config", OgmConfig, OccGridMappConfig, ScanMatchConfig, GmappingConfig, GraphConfig
+)
 
 THESIS_SIDE = 50.0
 """Edge of the thesis's grid [m] (4.3.2), kept at other resolutions."""
@@ -67,6 +72,29 @@ def _make_ogm(
     return Ogm(config, start_pose_map=start, grid=grid or growing_grid(start, resolution))
 
 
+def _make_scan_match(
+    start: ArrayLike, resolution: float | None, grid: GridConfig | None, settings: Mapping[str, Any]
+) -> Mapper:
+    config = _configured(ScanMatchConfig(), settings)
+    return ScanMatch(config, start_pose_map=start, grid=grid or growing_grid(start, resolution))
+
+
+def _make_gmapping(
+    start: ArrayLike, resolution: float | None, grid: GridConfig | None, settings: Mapping[str, Any]
+) -> Mapper:
+    config = _configured(GmappingConfig(), settings)
+    if resolution is not None:
+        config = replace(config, delta=resolution)
+    return Gmapping(config, start_pose_map=start, grid=grid)
+
+
+def _make_graph(
+    start: ArrayLike, resolution: float | None, grid: GridConfig | None, settings: Mapping[str, Any]
+) -> Mapper:
+    config = _configured(GraphConfig(), settings)
+    return GraphSlam(config, start_pose_map=start, grid=grid or growing_grid(start, resolution))
+
+
 def _configured(config: Config, settings: Mapping[str, Any]) -> Config:
     """The config with settings changed, or one clear error about a setting that there is not."""
     known = [field.name for field in fields(config)]
@@ -76,5 +104,20 @@ def _configured(config: Config, settings: Mapping[str, Any]) -> Config:
     return replace(config, **settings)
 
 
-MAPPERS = {"occgridmapp": _make_occ_grid_mapp, "ogm": _make_ogm}
+MAPPERS = {
+    "graph": _make_graph,
+    "gmapping": _make_gmapping,
+    "scan_match": _make_scan_match,
+    "ogm": _make_ogm,
+    "occgridmapp": _make_occ_grid_mapp,
+}
 """The mappers by name."""
+
+CONFIGS: dict[str, type] = {
+    "graph": GraphConfig,
+    "gmapping": GmappingConfig,
+    "scan_match": ScanMatchConfig,
+    "ogm": OgmConfig,
+    "occgridmapp": OccGridMappConfig,
+}
+"""The class of each mapper's settings."""

@@ -17,6 +17,8 @@ from mapping.geometry import Pose
 ODOMETRY_COLUMNS = ("stamp", "x", "y", "yaw", "linear_x", "angular_z")
 IMU_COLUMNS = ("stamp", "qx", "qy", "qz", "qw", "wx", "wy", "wz", "ax", "ay", "az")
 
+_TURN_RATE_COLUMNS = (IMU_COLUMNS.index("stamp"), IMU_COLUMNS.index("wz"))
+
 Observation = Mapping[str, NDArray[Any]]
 
 
@@ -153,3 +155,15 @@ class _ImuRows(Sequence[Imu]):
             angular_velocity=row[5:8],
             linear_acceleration=row[8:11],
         )
+
+    def turn_rates(self) -> NDArray[np.float64]:
+        """Stamp and angular velocity about z of every row ``(n, 2)``, without making messages."""
+        return self._rows.take(_TURN_RATE_COLUMNS, axis=1)
+
+
+def turn_rates(imu: Sequence[Imu]) -> NDArray[np.float64]:
+    """Stamp [s] and angular velocity about z [rad/s] of every message ``(n, 2)``."""
+    if isinstance(imu, _ImuRows):
+        return imu.turn_rates()
+    rows = [(message.stamp, message.angular_velocity[2]) for message in imu]
+    return np.array(rows, dtype=np.float64).reshape(-1, 2)

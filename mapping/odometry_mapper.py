@@ -52,6 +52,9 @@ class OdometryMapper(ABC):
                 return
         self.scans_dropped += 1
 
+    def finish(self) -> None:
+        """Nothing is put off."""
+
     @abstractmethod
     def draw(self, scan: LaserScan) -> bool:
         """Draw a new scan into the grid; False when it could not be used."""

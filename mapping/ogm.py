@@ -18,13 +18,14 @@ from numpy.typing import ArrayLike, NDArray
 from mapping.burger import LIDAR_POSE_BASE, LIDAR_RANGE_MAX
 from mapping.deskew_kernels import aim, bounds
 from mapping.errors import TestbedError
+from mapping.geometry import Pose
 from mapping.grid import GridConfig, OccupancyGrid
 from mapping.hit_cells import hit_cells, raise_to, raised_values
 from mapping.messages import LaserScan
 from mapping.odometry_mapper import OdometryMapper, checked_pose
 from mapping.polygon_fill import lower_inside
 from mapping.scan_polygon import compare_neighbours, free_outline
-from mapping.sensor_model import Beams, range_sigma, read_beams
+from mapping.sensor_model import LDS_01, Beams, RangeNoise, range_sigma, read_beams
 
 START_CELLS = 512
 """Cells along each side of the grid at the start; it grows from there."""
@@ -63,6 +64,8 @@ class OgmConfig:
     """Farther readings only clear space, up to here [m]."""
     lidar_pose_base: tuple[float, float, float] = LIDAR_POSE_BASE
     """The lidar's pose in base_footprint."""
+    range_noise: RangeNoise = LDS_01
+    """How far the lidar's readings scatter."""
 
     def __post_init__(self) -> None:
         """Refuse figures that make no mapper."""
@@ -101,71 +104,92 @@ class Ogm(OdometryMapper):
         poses_odom = self.track.poses_at(scan.beam_stamps[beams.indices])
         if poses_odom is None or beams.indices.size == 0:
             return False
-        origins, directions, ends = aim(
+        angles = scan.angles[beams.indices]
+        draw_beams(
+            self.grid,
+            self.config,
+            beams,
+            angles,
+            scan.angle_increment,
             self.start_pose_map,
             poses_odom,
-            self.config.lidar_pose_base,
-            scan.angles[beams.indices],
-            beams.lengths + BEHIND_CELLS * self.grid.resolution,
         )
-        self.grid.cover(*bounds(origins, ends))
-        self._update(beams, origins, directions, ends, scan.angle_increment)
         return True
 
-    def _update(
-        self,
-        beams: Beams,
-        origins: NDArray[np.float64],
-        directions: NDArray[np.float64],
-        ends: NDArray[np.float64],
-        increment: float,
-    ) -> None:
-        """Lower what the beams passed, but let what they hit win: it is raised from before that.
 
-        Beams without a return keep a margin too: a wall just out of range may be just within.
-        """
-        config, grid = self.config, self.grid
-        sigmas = range_sigma(beams.lengths)
-        gains = config.hit * np.minimum(1.0, grid.resolution / sigmas)
-        cells, cell_gains = hit_cells(
-            (ends[beams.hits] - grid.origin) / grid.resolution,
-            gains[beams.hits],
-            config.link / grid.resolution,
-            grid.shape,
-        )
-        outline = self._free_outline(beams, sigmas, origins, directions, increment)
-        raised = raised_values(grid.log_odds, cells, cell_gains, np.float32(config.highest))
-        lower_inside(grid.log_odds, outline, np.float32(config.miss), np.float32(config.lowest))
-        raise_to(grid.log_odds, cells, raised)
+def draw_beams(
+    grid: OccupancyGrid,
+    config: OgmConfig,
+    beams: Beams,
+    angles: NDArray[np.float64],
+    increment: float,
+    start_pose_map: Pose,
+    poses: Pose,
+) -> None:
+    """Draw the beams of one scan, each from where the robot was when it was shot.
 
-    def _free_outline(
-        self,
-        beams: Beams,
-        sigmas: NDArray[np.float64],
-        origins: NDArray[np.float64],
-        directions: NDArray[np.float64],
-        increment: float,
-    ) -> NDArray[np.float64]:
-        """The edges around what the beams saw free, in cells; wants them counter-clockwise."""
-        config, grid = self.config, self.grid
-        blur = np.maximum(sigmas - config.sharp_cells * grid.resolution, 0.0)
-        free = np.maximum(beams.lengths - config.clear_sigmas * blur, 0.0)
-        order = slice(None) if increment > 0.0 else slice(None, None, -1)
-        pairs = compare_neighbours(
+    What they passed is lowered, but what they hit wins: it is raised from before that. Beams
+    without a return keep a margin too: a wall just out of range may be just within.
+
+    Args:
+        grid: Grows to hold them, if it grows.
+        config: How to draw.
+        beams: What they saw, at least one.
+        angles: Their directions in the sensor frame ``(n,)`` [rad].
+        increment: Angle between neighbours [rad].
+        start_pose_map: The frame of ``poses``, in the map ``(3,)``.
+        poses: Pose of base_footprint at each beam's time ``(n, 3)``.
+    """
+    origins, directions, ends = aim(
+        start_pose_map,
+        poses,
+        config.lidar_pose_base,
+        angles,
+        beams.lengths + BEHIND_CELLS * grid.resolution,
+    )
+    grid.cover(*bounds(origins, ends))
+    sigmas = range_sigma(beams.lengths, config.range_noise)
+    gains = config.hit * np.minimum(1.0, grid.resolution / sigmas)
+    cells, cell_gains = hit_cells(
+        (ends[beams.hits] - grid.origin) / grid.resolution,
+        gains[beams.hits],
+        config.link / grid.resolution,
+        grid.shape,
+    )
+    outline = _free_outline(grid, config, beams, sigmas, origins, directions, increment)
+    raised = raised_values(grid.log_odds, cells, cell_gains, np.float32(config.highest))
+    lower_inside(grid.log_odds, outline, np.float32(config.miss), np.float32(config.lowest))
+    raise_to(grid.log_odds, cells, raised)
+
+
+def _free_outline(
+    grid: OccupancyGrid,
+    config: OgmConfig,
+    beams: Beams,
+    sigmas: NDArray[np.float64],
+    origins: NDArray[np.float64],
+    directions: NDArray[np.float64],
+    increment: float,
+) -> NDArray[np.float64]:
+    """The edges around what the beams saw free, in cells; wants them counter-clockwise."""
+    blur = np.maximum(sigmas - config.sharp_cells * grid.resolution, 0.0)
+    free = np.maximum(beams.lengths - config.clear_sigmas * blur, 0.0)
+    order = slice(None) if increment > 0.0 else slice(None, None, -1)
+    pairs = compare_neighbours(
+        directions[order],
+        beams.lengths[order],
+        sigmas[order],
+        beams.hits[order],
+        WIDEST_WEDGE * abs(increment),
+    )
+    return np.asarray(
+        free_outline(
+            (origins[order] - grid.origin) / grid.resolution,
             directions[order],
-            beams.lengths[order],
-            sigmas[order],
-            beams.hits[order],
-            WIDEST_WEDGE * abs(increment),
+            free[order] / grid.resolution,
+            pairs,
         )
-        return np.asarray(
-            free_outline(
-                (origins[order] - grid.origin) / grid.resolution,
-                directions[order],
-                free[order] / grid.resolution,
-                pairs,
-            )
-        )
+    )
 
 
 def growing_grid(start_pose_map: ArrayLike, resolution: float | None = None) -> GridConfig:

@@ -16,13 +16,22 @@ class PoseHistory:
         self._rows = np.empty((FIRST_ROWS, 4))
         self._count = 0
 
+    @classmethod
+    def of(cls, stamps: NDArray[np.float64], poses: Pose) -> "PoseHistory":
+        """The history with stamps ``(n,)`` and poses ``(n, 3)``."""
+        history = cls()
+        history._rows = np.column_stack((stamps, poses))
+        history._count = len(stamps)
+        return history
+
     def __len__(self) -> int:
         return self._count
 
     def add(self, stamp: float, pose: Pose) -> None:
         """Add a stamp [s] and its pose ``(3,)``."""
         if self._count == len(self._rows):
-            self._rows = np.concatenate((self._rows, np.empty_like(self._rows)))
+            more = np.empty((max(self._count, FIRST_ROWS), 4))
+            self._rows = np.concatenate((self._rows, more))
         self._rows[self._count, 0] = stamp
         self._rows[self._count, 1:] = pose
         self._count += 1

@@ -1,4 +1,4 @@
-"""Scores an estimated trajectory against the true one: ATE, yaw error, path length."""
+"""Poses over time: what they were in between, and how long the way was."""
 
 from dataclasses import dataclass
 
@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mapping.errors import TestbedError
-from mapping.geometry import Pose, compose, wrap_to_pi
+from mapping.geometry import Pose, between, compose, wrap_to_pi
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -31,53 +31,6 @@ class Trajectory:
             raise TestbedError("trajectory: stamps do not ascend; each must be later than the last")
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class TrajectoryScores:
-    """How far an estimate was from the truth."""
-
-    ate_rmse_m: float
-    """Root mean square of the distances between estimated and true positions [m] (Sturm et al.
-    2012)."""
-    ate_max_m: float
-    """The largest of them [m]."""
-    yaw_error_max_deg: float
-    """The largest difference of yaw [deg]."""
-    alignment: tuple[float, float, float]
-    """The pose (x, y, yaw) that the estimate was moved by before; zeros when not aligned."""
-
-
-def score_trajectory(
-    estimate: Trajectory, truth: Trajectory, *, align: bool = False
-) -> TrajectoryScores:
-    """Compare an estimate with the truth at the estimate's stamps.
-
-    The truth is interpolated; stamps of the estimate outside of it are left out.
-
-    Args:
-        estimate: The estimated trajectory.
-        truth: The true one.
-        align: Move the estimate rigidly onto the truth first (Umeyama 1991, without scale).
-
-    Raises:
-        TestbedError: The two do not overlap in time.
-    """
-    within = (estimate.stamps >= truth.stamps[0]) & (estimate.stamps <= truth.stamps[-1])
-    if not np.any(within):
-        raise TestbedError("trajectory: no stamp of the estimate lies within the truth's time")
-    poses = estimate.poses[within]
-    true_poses = poses_at(truth, estimate.stamps[within])
-    moved_by = umeyama(poses[:, :2], true_poses[:, :2]) if align else np.zeros(3)
-    poses = compose(moved_by, poses)
-    errors = np.hypot(*(poses[:, :2] - true_poses[:, :2]).T)
-    yaw_errors = np.abs(wrap_to_pi(poses[:, 2] - true_poses[:, 2]))
-    return TrajectoryScores(
-        ate_rmse_m=float(np.sqrt(np.mean(errors**2))),
-        ate_max_m=float(errors.max()),
-        yaw_error_max_deg=float(np.degrees(yaw_errors.max())),
-        alignment=(float(moved_by[0]), float(moved_by[1]), float(moved_by[2])),
-    )
-
-
 def poses_at(trajectory: Trajectory, stamps: ArrayLike) -> Pose:
     """The poses ``(n, 3)`` at stamps ``(n,)``, interpolated; yaw goes the short way round."""
     stamps = np.asarray(stamps, dtype=np.float64)
@@ -88,18 +41,28 @@ def poses_at(trajectory: Trajectory, stamps: ArrayLike) -> Pose:
     return poses
 
 
-def umeyama(points: NDArray[np.float64], targets: NDArray[np.float64]) -> Pose:
-    """The pose ``(3,)`` that brings points ``(n, 2)`` closest to their targets ``(n, 2)``.
+def completed(sparse: Trajectory, odometry: Trajectory) -> Trajectory:
+    """Corrected poses at all of odometry's stamps, from those known at some of them.
 
-    Least squares of rotation and translation in the plane, where the rotation of Umeyama (1991)
-    comes down to one angle. Points that all coincide are moved without being turned.
+    Between two known poses the robot went as odometry says; what then is left to the second one,
+    the correction, is spread evenly over the time between. Before the first and after the last
+    known pose odometry alone tells.
+
+    Args:
+        sparse: Corrected poses, in the map frame; at least one.
+        odometry: Poses in the odometry frame.
     """
-    mean, target_mean = points.mean(axis=0), targets.mean(axis=0)
-    p, q = points - mean, targets - target_mean
-    cross = float(np.sum(p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]))
-    yaw = float(np.arctan2(cross, np.sum(p * q)))
-    turned = compose(np.array([0.0, 0.0, yaw]), np.array([mean[0], mean[1], 0.0]))
-    return np.array([target_mean[0] - turned[0], target_mean[1] - turned[1], yaw])
+    odometry_there = poses_at(odometry, sparse.stamps)
+    after = np.searchsorted(sparse.stamps, odometry.stamps, side="right")
+    before = np.clip(after - 1, 0, None)
+    gone = between(odometry_there[before], odometry.poses)
+    steps = between(odometry_there[:-1], odometry_there[1:])
+    left_over = between(compose(sparse.poses[:-1], steps), sparse.poses[1:])
+    corrections = np.concatenate((left_over, np.zeros((1, 3))))  # none after the last
+    times = np.append(np.diff(sparse.stamps), 1.0)
+    share = np.clip((odometry.stamps - sparse.stamps[before]) / times[before], 0.0, 1.0)
+    corrected = compose(compose(sparse.poses[before], gone), share[:, None] * corrections[before])
+    return Trajectory(stamps=odometry.stamps, poses=corrected)
 
 
 def path_length(poses: ArrayLike) -> float:

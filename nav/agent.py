@@ -1,5 +1,6 @@
 """A mapper and a navigator make an agent: observation in, action out."""
 
+from array import array
 from time import perf_counter
 from typing import Protocol
 
@@ -27,9 +28,9 @@ class MappingAgent:
         self.mapper = mapper
         self.navigator = navigator
         self._scan: LaserScan | None = None
-        self.map_update_seconds: list[float] = []
+        self.map_update_seconds = array("f")
         """Wall time of each mapper update that took in a scan [s]."""
-        self.navigator_seconds: list[float] = []
+        self.navigator_seconds = array("f")
         """Wall time of each navigator command [s]."""
 
     def act(self, observation: Observation) -> Action:

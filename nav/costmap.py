@@ -52,6 +52,7 @@ class Costmap:
         self.states: NDArray[np.int8] = np.full((0, 0), UNKNOWN, dtype=np.int8)
         self.clearance: NDArray[np.float32] = np.zeros((0, 0), dtype=np.float32)
         self.cost: NDArray[np.float32] = np.zeros((0, 0), dtype=np.float32)
+        self._redraws = 0
 
     def glance(self, grid: OccupancyGrid, center: ArrayLike, reach: float) -> None:
         """Take over the states alone: enough to see what is known, and three times cheaper.
@@ -68,7 +69,7 @@ class Costmap:
     ) -> None:
         """Take over what changed in the map within ``reach`` [m] of ``center`` (x, y).
 
-        Without a centre, or when the map has grown since, everything is taken over.
+        Without a centre, or when the map has grown or was drawn anew since, everything is.
         """
         rows, columns = self._shape_over(grid)
         window = (0, rows, 0, columns)
@@ -109,14 +110,16 @@ class Costmap:
         return -(-rows // factor), -(-columns // factor)
 
     def _fits(self, grid: OccupancyGrid) -> bool:
-        """Whether the planning grid still lies over the map: it has not grown since."""
+        """Whether the planning grid still lies over the map: not grown, not drawn anew since."""
         same_shape = self.states.shape == self._shape_over(grid)
-        return same_shape and np.array_equal(self.origin, grid.origin)
+        same_map = self._redraws == grid.redraws
+        return same_map and same_shape and np.array_equal(self.origin, grid.origin)
 
     def _lay_over(self, grid: OccupancyGrid) -> None:
         shape = self._shape_over(grid)
         self.resolution = self._factor(grid) * grid.resolution
         self.origin = grid.origin.copy()
+        self._redraws = grid.redraws
         self.states = np.full(shape, UNKNOWN, dtype=np.int8)
         self.clearance = np.full(shape, self.config.inflation, dtype=np.float32)
         self.cost = np.full(shape, np.inf, dtype=np.float32)

@@ -10,23 +10,19 @@ from enum import Enum, auto
 
 import numpy as np
 
-from mapping.geometry import Pose
+from mapping.geometry import Pose, compose, inverse
 from mapping.grid import OccupancyGrid
 from mapping.messages import LaserScan, Twist
 from nav.costmap import Costmap
 from nav.decision import choose
+from nav.driver import Driver
 from nav.explorer_config import ExplorerConfig
 from nav.former_walls import FormerWalls
 from nav.frontier import Frontier, find_frontiers
 from nav.given_up import GivenUp
-from nav.headway import Headway
+from nav.map_jump import shift_at
 from nav.navigator import COMPLETE, RUNNING, STUCK, UNREACHABLE_START, DroppedFrontier, Plan
-from nav.path_follower import PathFollower
-from nav.path_kernels import SEARCHED_POINTS, is_near
 from nav.planner import CostField
-from nav.recovery import Recovery
-from nav.safety import Safety
-from nav.scan_points import ScanPoints
 from nav.viewpoint import Viewpoint, ViewpointFinder, gain_at
 from nav.visited_places import VisitedPlaces
 
@@ -51,13 +47,8 @@ class FrontierExplorer:
         self.config = config or ExplorerConfig()
         self.status = RUNNING
         self.dropped_frontiers: tuple[DroppedFrontier, ...] = ()
-        self._period = self.config.follower.limits.period
         self._costmap = Costmap(self.config.costmap)
-        self._follower = PathFollower(self.config.follower)
-        self._safety = Safety(self.config.safety)
-        self._recovery = Recovery(self.config.recovery)
-        self._scan_points = ScanPoints()
-        self._headway = Headway(self.config.headway)
+        self._driver = Driver(self.config.driver)
         self._given_up = GivenUp()
         self._finder = ViewpointFinder(self.config.viewpoint)
         self._visited = VisitedPlaces(self.config.visited_places)
@@ -67,17 +58,16 @@ class FrontierExplorer:
         self._target: Viewpoint | None = None
         self._goal: np.ndarray | None = None
         self._frontiers: list[Frontier] = []
-        self._recoveries = self._tries = 0
-        self._recovered_at: Pose | None = None
+        self._tries = 0
+        self._shift = 0.0
         self._decided_at = self._glanced_at = self._looked_at = -np.inf
-        self._elapsed = 0.0
 
     @property
     def plan(self) -> Plan:
         """The way ahead, the goal and the frontiers of the last decision."""
         middles = [frontier.middle for frontier in self._frontiers]
         return Plan(
-            path=self._follower.path_ahead if self._goal is not None else np.zeros((0, 2)),
+            path=self._driver.path_ahead if self._goal is not None else np.zeros((0, 2)),
             goal=self._goal,
             frontiers=np.array(middles).reshape(-1, 2),
         )
@@ -86,42 +76,49 @@ class FrontierExplorer:
         """The velocity for the next control period; zero once the status is final."""
         if self._home is None:
             self._home = pose_map.copy()
-        new_scan = self._scan_points.update(
-            scan, pose_map, self._period, self.config.obstacle_reach
-        )
-        if new_scan:
+        driver = self._driver
+        driver.see(grid, pose_map, scan)
+        if driver.jump is not None:
+            self._note_jump(driver.jump, pose_map)
+        if driver.has_new_scan:
             self._visited.note(self._costmap, pose_map[:2])
-        self._elapsed += self._period
-        if self.status != RUNNING or self._elapsed < self.config.first_look:
-            return self._move(Twist(), pose_map, grid)
-        if self._recovery.active:
-            twist = self._recovery.command(pose_map, self._scan_points.points, self._period)
+        if self.status != RUNNING or driver.is_looking:
+            return driver.stand()
+        if driver.is_recovering:
+            twist = driver.recover()
             if twist is not None:
-                return self._move(twist, pose_map, grid)
+                return twist
             self._forget_goal()
-        if self._must_decide(grid, pose_map, new_scan):
+        if self._must_decide(grid, pose_map):
             self._decide(grid, pose_map)
         if self.status != RUNNING or self._goal is None:
-            return self._move(Twist(), pose_map, grid)
-        if self._headway.is_lost(pose_map, self._period):
-            self._start_recovery(pose_map)
-            return self._move(Twist(), pose_map, grid)
-        clearance = self._costmap.clearance_at((float(pose_map[0]), float(pose_map[1])))
-        return self._move(self._follower.command(pose_map, clearance), pose_map, grid)
+            return driver.stand()
+        if driver.gets_nowhere():
+            self._start_recovery()
+            return driver.stand()
+        return driver.follow(self._costmap.clearance_at((float(pose_map[0]), float(pose_map[1]))))
 
-    def _move(self, wanted: Twist, pose: Pose, grid: OccupancyGrid) -> Twist:
-        """The twist that is safe, remembered as the one to accelerate from."""
-        twist = self._safety.limit(wanted, pose, self._scan_points.points, grid)
-        self._follower.last = twist
-        return twist
+    def _note_jump(self, jump: Pose, pose: Pose) -> None:
+        """Plan anew on a map drawn anew, and forget what is no longer where it was.
 
-    def _must_decide(self, grid: OccupancyGrid, pose: Pose, new_scan: bool) -> bool:
+        Home stays: it is where the map began. Frontiers that were given up stay so, or no end
+        would be in sight; one that is wrongly taken for such a one has its second chance.
+        """
+        self._decided_at = -np.inf
+        self._shift += shift_at(jump, compose(inverse(jump), pose))
+        if self._shift > self.config.memory_shift:
+            self._shift = 0.0
+            self._visited = VisitedPlaces(self.config.visited_places)
+            self._former_walls = FormerWalls(self.config.former_walls)
+
+    def _must_decide(self, grid: OccupancyGrid, pose: Pose) -> bool:
         """Whether the way on is in question."""
         if self._goal is None or self._has_arrived(grid, pose):
             return True
         if self.status != RUNNING:
             return False
-        return self._is_due(grid, pose) or (new_scan and self._path_is_blocked())
+        driver = self._driver
+        return self._is_due(grid, pose) or (driver.has_new_scan and driver.path_is_blocked())
 
     def _has_arrived(self, grid: OccupancyGrid, pose: Pose) -> bool:
         """Whether the goal is reached; says what came of it."""
@@ -149,7 +146,7 @@ class FrontierExplorer:
 
     def _is_due(self, grid: OccupancyGrid, pose: Pose) -> bool:
         """Whether it is time to decide anew: long ago, or the goal has lost its worth."""
-        now = self._scan_points.time
+        now = self._driver.time
         if self._task is Task.GO_HOME:
             return now - self._decided_at > self.config.replan_home_every
         if now - self._decided_at > self.config.decide_every:
@@ -164,21 +161,16 @@ class FrontierExplorer:
     def _look(self, grid: OccupancyGrid, pose: Pose) -> None:
         self._costmap.refresh(grid, pose[:2], self._changed_reach())
         self._former_walls.note(self._costmap, pose[:2])
-        self._looked_at = self._scan_points.time
+        self._looked_at = self._driver.time
 
     def _changed_reach(self) -> float:
         """How far from the robot the map may have changed since the last look [m]."""
-        since = self._scan_points.time - self._looked_at
-        return self.config.mapped_reach + since * self.config.follower.limits.max_linear
-
-    def _path_is_blocked(self) -> bool:
-        """Whether the newest returns lie on the next stretch of the path."""
-        path = self._follower.path_ahead[:SEARCHED_POINTS]
-        return bool(is_near(self._scan_points.points, path, self.config.path_clearance))
+        since = self._driver.time - self._looked_at
+        return self.config.mapped_reach + since * self._driver.max_speed
 
     def _decide(self, grid: OccupancyGrid, pose: Pose) -> None:
         """Look at the map and set out for the best viewpoint, or home when none is left."""
-        self._decided_at = self._glanced_at = self._scan_points.time
+        self._decided_at = self._glanced_at = self._driver.time
         self._look(grid, pose)
         if self._task is Task.EXPLORE:
             target, field = self._best_viewpoint(pose)
@@ -228,36 +220,30 @@ class FrontierExplorer:
         elif float(np.hypot(*(self._home - pose)[:2])) < 2.0 * self.config.home_tolerance:
             self._finish(COMPLETE)
         else:
-            self._start_recovery(pose)
+            self._start_recovery()
 
     def _set_out(self, field: CostField, goal: np.ndarray, target: Viewpoint | None) -> None:
         if self._goal is None or float(np.hypot(*(self._goal - goal))) > self.config.arrived:
-            self._headway.restart()
+            self._driver.restart_headway()
         if target is None or self._target is None or not target.is_near(self._target):
             self._tries = 0
         self._goal, self._target = goal.copy(), target
-        self._follower.set_path(field.path_to(goal))
+        self._driver.set_path(field.path_to(goal))
 
-    def _start_recovery(self, pose: Pose) -> None:
+    def _start_recovery(self) -> None:
         """Recover; give the frontier up after too many, the robot after far too many."""
-        got_on = self._recovered_at is None or (
-            math.dist(self._recovered_at[:2], pose[:2]) > self.config.got_on
-        )
-        self._recoveries = 1 if got_on else self._recoveries + 1
-        self._recovered_at = pose.copy()
         self._tries += 1
-        self._headway.restart()
-        if self._recoveries > self.config.recoveries_in_a_row:
+        if not self._driver.may_recover():
             self._finish(STUCK)
             return
         if self._target is not None and self._tries > self.config.recoveries_per_goal:
             self._given_up.give_up(self._target.frontier, NO_HEADWAY)
             self._target = None
-        self._recovery.begin(pose, in_a_row=self._recoveries)
+        self._driver.begin_recovery()
 
     def _forget_goal(self) -> None:
         self._goal, self._target = None, None
-        self._headway.restart()
+        self._driver.restart_headway()
 
     def _finish(self, status: str) -> None:
         self.status = status

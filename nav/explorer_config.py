@@ -5,12 +5,9 @@ from dataclasses import dataclass
 from mapping.burger import LIDAR_RANGE_MAX
 from nav.costmap import CostmapConfig
 from nav.decision import DecisionConfig
+from nav.driver_config import DriverConfig
 from nav.former_walls import FormerWallsConfig
 from nav.frontier import FrontierConfig
-from nav.headway import HeadwayConfig
-from nav.path_follower import FollowerConfig
-from nav.recovery import RecoveryConfig
-from nav.safety import SafetyConfig
 from nav.viewpoint import ViewpointConfig
 from nav.visited_places import VisitedPlacesConfig
 
@@ -25,12 +22,7 @@ class ExplorerConfig:
     former_walls: FormerWallsConfig = FormerWallsConfig()
     visited_places: VisitedPlacesConfig = VisitedPlacesConfig()
     decision: DecisionConfig = DecisionConfig()
-    follower: FollowerConfig = FollowerConfig()
-    safety: SafetyConfig = SafetyConfig()
-    headway: HeadwayConfig = HeadwayConfig()
-    recovery: RecoveryConfig = RecoveryConfig()
-    first_look: float = 1.0
-    """Time to stand and look before the first decision [s]: a mapper may want several scans."""
+    driver: DriverConfig = DriverConfig()
     decide_every: float = 4.0
     """Longest time between two decisions while exploring [s]."""
     replan_home_every: float = 8.0
@@ -48,13 +40,8 @@ class ExplorerConfig:
     """Distance to a viewpoint at which it is reached [m]."""
     home_tolerance: float = 0.08
     """Distance to the start at which the robot is home [m]."""
-    obstacle_reach: float = 1.2
-    """Returns up to this far are held against the path [m]."""
-    path_clearance: float = 0.10
-    """A return this close to the path ahead blocks it [m]."""
     recoveries_per_goal: int = 2
     """Recoveries on the way to a frontier after which it is given up."""
-    recoveries_in_a_row: int = 8
-    """Recoveries without getting on in between after which the robot is stuck."""
-    got_on: float = 1.0
-    """Distance from the last recovery's place at which the robot has got on [m]."""
+    memory_shift: float = 0.15
+    """When redrawn maps have moved the robot this far in all [m], former walls and visited places
+    are forgotten: they are believed to lie within 0.2 m of where they were."""

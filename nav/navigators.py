@@ -2,23 +2,40 @@
 
 from collections.abc import Callable
 
+from numpy.typing import ArrayLike
+
 from mapping.errors import TestbedError
 from nav.explorer import FrontierExplorer
 from nav.navigator import Navigator
 from nav.reactive import Reactive
+from nav.waypoints import Waypoints
 
-NAVIGATORS: dict[str, Callable[[], Navigator]] = {
+WAYPOINTS = "waypoints"
+"""The navigator that needs to be told where to go."""
+
+NAVIGATORS: dict[str, Callable[..., Navigator]] = {
     "frontier": FrontierExplorer,
     "reactive": Reactive,
+    WAYPOINTS: Waypoints,
 }
 
 
-def make_navigator(name: str) -> Navigator:
+def make_navigator(name: str, waypoints: ArrayLike | None = None) -> Navigator:
     """A fresh navigator.
 
+    Args:
+        name: One of NAVIGATORS.
+        waypoints: Places ``(n, 2)`` in the map frame [m]: for ``waypoints``, and for no other.
+
     Raises:
-        TestbedError: If there is none of that name.
+        TestbedError: There is none of that name, or waypoints are missing, wrong or not wanted.
     """
     if name not in NAVIGATORS:
         raise TestbedError(f"navigator: {name!r}; must be one of {', '.join(NAVIGATORS)}")
+    if name == WAYPOINTS:
+        if waypoints is None:
+            raise TestbedError(f"waypoints: none; navigator {name!r} needs one at least")
+        return NAVIGATORS[name](waypoints)
+    if waypoints is not None:
+        raise TestbedError(f"waypoints: given; must not be with navigator {name!r}")
     return NAVIGATORS[name]()

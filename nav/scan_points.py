@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from mapping.burger import LIDAR_POSE_BASE
 from mapping.deskew_kernels import aim, interpolate
-from mapping.geometry import Pose
+from mapping.geometry import Pose, compose, transform_points
 from mapping.messages import LaserScan
 
 IN_THE_MAP = np.zeros(3)
@@ -47,6 +47,12 @@ class ScanPoints:
             self._stamp = scan.stamp
             self.points = self._place(scan, reach)
         return is_new
+
+    def follow_jump(self, jump: Pose) -> None:
+        """Move what is remembered into a map drawn anew, in which the old one lies at ``jump``."""
+        self.points = transform_points(jump, self.points)
+        for i, (time, *pose, speed, rate) in enumerate(self._poses):
+            self._poses[i] = (time, *compose(jump, pose).tolist(), speed, rate)
 
     def _remember(self, pose: Pose) -> None:
         x, y, yaw = pose.tolist()

@@ -5,6 +5,7 @@ from importlib import import_module
 
 VERBS = {
     "explore": "one autonomous episode: drive, map, score, write a run folder",
+    "replay": "map a recorded log, score what can be scored, write a run folder",
     "compare": "score a map file against a floor plan or another map",
     "world": "list, show and convert floor plans",
     "bench": "how fast each stage and the whole loop run on this machine",

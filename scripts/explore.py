@@ -7,6 +7,7 @@ from typing import Annotated, Any
 import tyro
 
 from evaluation.episode import Episode, EpisodeConfig, Progress, run_episode
+from evaluation.recorder import Recorder
 from evaluation.run_folder import run_folder, write_run
 from scripts.arguments import parse
 from scripts.first_run import compile_if_needed
@@ -20,6 +21,8 @@ class Explore:
     episode: Annotated[EpisodeConfig, tyro.conf.OmitArgPrefixes]
     out: Path | None = None
     """Folder to write; default runs/WORLD-MAPPER-seedN."""
+    record: bool = False
+    """Write the messages of the run as well: log.carmen and a ROS 2 bag in the folder bag."""
 
 
 def run(arguments: list[str]) -> int:
@@ -27,11 +30,13 @@ def run(arguments: list[str]) -> int:
     options = parse(Explore, "explore", arguments)
     config = options.episode
     out = options.out or Path("runs") / _folder_name(config)
+    recorder = Recorder() if options.record else None
     with run_folder(out):
         compile_if_needed()
-        result = write_run(_watch(config), out)
+        result = write_run(_watch(config, recorder), out)
     print(summary(result))
-    print(f"map, picture, trajectories and result.json are in {out}/")
+    recorded = ", log.carmen, bag" if options.record else ""
+    print(f"map, picture, trajectories{recorded} and result.json are in {out}/")
     return 0 if result["stop_reason"] == "complete" else 1
 
 
@@ -47,7 +52,7 @@ def summary(result: dict[str, Any]) -> str:
             f"f1_10cm {_shown(result['f1_10cm'])}   free_iou {_shown(result['free_iou'])}",
             f"  path {result['path_length_m']:.1f} m   contacts {result['contacts']}   "
             f"home within {result['home_distance_m']:.2f} m   "
-            f"position error {result['ate_rmse_m']:.3f} m rms",
+            f"position error {_shown(result['ate_rmse_m'])} m rms",
         )
     )
 
@@ -60,10 +65,10 @@ def _folder_name(config: EpisodeConfig) -> str:
     return f"{Path(config.world).stem}-{config.mapper}-seed{config.seed}"
 
 
-def _watch(config: EpisodeConfig) -> Episode:
+def _watch(config: EpisodeConfig, recorder: Recorder | None) -> Episode:
     """Run the episode, its map growing before the user's eyes if there is a terminal."""
     if not can_draw():
-        return run_episode(config)
+        return run_episode(config, recorder=recorder)
     live_map = LiveMap(f"exploring {Path(config.world).stem}")
     newest: list[Progress] = []
 
@@ -71,7 +76,7 @@ def _watch(config: EpisodeConfig) -> Episode:
         newest[:] = [progress]
         live_map.show(progress)
 
-    episode = run_episode(config, show)
+    episode = run_episode(config, show, recorder=recorder)
     for progress in newest:
         live_map.draw(progress)
     return episode

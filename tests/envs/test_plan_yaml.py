@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from envs.floor_plan import Box, Cylinder, FloorPlan, Polygon, Wall
+from envs.floor_plan import Box, Cylinder, FloorPlan, Polygon, Route, Wall
 from envs.plan_yaml import load_yaml, plan_from_fields, plan_to_yaml, read_plan, write_plan
 from mapping.errors import TestbedError
 
@@ -42,6 +42,7 @@ polygons = st.builds(
     *(points, st.floats(0.1, 5.0), heights),
 )
 names = st.text(st.characters(categories=("L", "N", "P", "S")), min_size=1, max_size=20)
+routes = st.builds(Route, name=names, points=st.lists(points, min_size=1, max_size=3).map(tuple))
 plans = st.builds(
     lambda box, **fields: FloorPlan(boxes=tuple(box), **fields),
     box=st.lists(boxes, min_size=1, max_size=3),
@@ -51,6 +52,7 @@ plans = st.builds(
     walls=st.lists(walls, max_size=3).map(tuple),
     cylinders=st.lists(cylinders, max_size=3).map(tuple),
     polygons=st.lists(polygons, max_size=3).map(tuple),
+    routes=st.lists(routes, max_size=2, unique_by=lambda route: route.name).map(tuple),
 )
 
 
@@ -162,3 +164,30 @@ def test_a_file_that_cannot_be_written_leaves_nothing_behind(tmp_path):
     with pytest.raises(TestbedError, match="cannot be written"):
         write_plan(plan, tmp_path / "no_such_folder" / "plan.yaml")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_routes_are_read_and_written_by_name(tmp_path):
+    path = tmp_path / "plan.yaml"
+    path.write_text(
+        HEAD + "boxes: [{center: [3, 3], size: [1, 1]}]\nroutes: {a: [[1, 2], [3, 4.5]]}\n"
+    )
+    plan = read_plan(path)
+    assert plan.routes == (Route(name="a", points=((1.0, 2.0), (3.0, 4.5))),)
+    write_plan(plan, path)
+    assert read_plan(path) == plan
+
+
+@pytest.mark.parametrize(
+    ("routes", "told"),
+    [
+        ("[[1, 2]]", "routes: .*; must be names with lists"),
+        ("{a: [1, 2]}", r"routes: a: points\[0\]: 1; must be two numbers"),
+        ("{a: []}", "routes: a: points: none"),
+        ("{a: [[.nan, 0]]}", "routes: a: points: .*must be finite"),
+    ],
+)
+def test_a_route_that_is_none_is_refused_by_its_name(tmp_path, routes, told):
+    path = tmp_path / "plan.yaml"
+    path.write_text(HEAD + f"boxes: [{{center: [3, 3], size: [1, 1]}}]\nroutes: {routes}\n")
+    with pytest.raises(TestbedError, match=told):
+        read_plan(path)

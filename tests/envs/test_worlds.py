@@ -7,6 +7,7 @@ import shapely
 from scipy import ndimage
 
 from envs.floor_space import floor_space
+from envs.solids import distance
 from envs.worlds import WORLDS, built_in_worlds, load_world
 from mapping.burger import ROBOT_RADIUS
 from mapping.errors import TestbedError
@@ -157,3 +158,19 @@ def test_a_file_of_another_kind_is_refused(tmp_path):
 
 def test_headings_of_the_worlds_lie_within_half_a_turn():
     assert all(abs(load_world(name).start[2]) <= math.pi for name in built_in_worlds())
+
+
+@pytest.mark.parametrize("name", FLOOR_AREAS)
+def test_the_robot_fits_at_every_place_of_a_route(name):
+    plan = load_world(name)
+    for route in plan.routes:
+        for point in route.points:
+            gap = min(distance(solid, point) for solid in plan.solids())
+            assert gap > 1.5 * ROBOT_RADIUS, (route.name, point)
+
+
+def test_the_worlds_of_the_long_runs_have_their_routes_and_they_end_at_the_start():
+    for name, wanted in (("lim_hallway", "there_and_back"), ("corridor_loop", "twice_round")):
+        plan = load_world(name)
+        points = {route.name: route.points for route in plan.routes}[wanted]
+        assert points[-1] == plan.start[:2]

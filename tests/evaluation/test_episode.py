@@ -1,12 +1,14 @@
 """Whole short episodes in a tiny room: reproducible, complete in their keys, safe to interrupt."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from unittest.mock import patch
 
 import numpy as np
 import pytest
 
+from envs.floor_plan import Route
 from evaluation.episode import EpisodeConfig, Progress, run_episode
 from evaluation.result import TIMING_KEYS
 from evaluation.run_folder import write_run
@@ -19,9 +21,10 @@ SHORT = EpisodeConfig(world="tiny_room", seed=3, time_limit=15.0)
 DESIGN_KEYS = set(
     "world mapper navigator seed stop_reason sim_time_s wall_time_s real_time_factor coverage "
     "t90_s t95_s t99_s path_length_m contacts min_clearance_m f1_5cm f1_10cm adnn_m h95_m free_iou "
-    "false_free wall_thickness_ratio ate_rmse_m ate_max_m yaw_error_max_deg map_updates "
-    "scans_dropped map_update_ms_p50 map_update_ms_p99 map_update_rate_hz map_file_kb peak_rss_mb "
-    "home_distance_m dropped_frontiers".split()
+    "false_free wall_thickness_ratio ate_rmse_m ate_max_m yaw_error_max_deg ate_online_rmse_m "
+    "rpe_trans_rmse_m rpe_rot_rmse_deg map_updates scans_dropped map_update_ms_p50 "
+    "map_update_ms_p99 map_update_rate_hz map_file_kb peak_rss_mb home_distance_m "
+    "dropped_frontiers".split()
 )
 
 FILES = {
@@ -71,6 +74,13 @@ def test_an_episode_out_of_time_says_so() -> None:
     episode = run_episode(EpisodeConfig(time_limit=2.0), plan=TINY_ROOM)
     assert episode.stop_reason == "time_limit"
     assert episode.sim_time == pytest.approx(2.0, abs=0.3), "the first sweep comes before"
+
+
+def test_an_episode_of_one_step_has_no_trajectory_to_score(tmp_path: Path) -> None:
+    result = write_run(run_episode(EpisodeConfig(time_limit=0.1), plan=TINY_ROOM), tmp_path)
+    assert result["ate_rmse_m"] is None
+    assert result["rpe_trans_rmse_m"] is None
+    assert result["ate_online_rmse_m"] == pytest.approx(0.0, abs=1e-3), "it has not moved"
 
 
 def test_ctrl_c_ends_an_episode_and_keeps_the_map(tmp_path: Path) -> None:
@@ -126,3 +136,16 @@ def test_a_config_that_makes_no_episode_is_refused(wrong: dict[str, float]) -> N
 def test_an_unknown_name_is_refused_with_the_known_ones(field: str) -> None:
     with pytest.raises(TestbedError, match=r"nonsense.*(must be|one of)"):
         run_episode(EpisodeConfig(**{field: "nonsense"}), plan=TINY_ROOM)
+
+
+def test_waypoints_come_from_a_route_of_the_world_or_from_their_text() -> None:
+    plan = replace(TINY_ROOM, routes=(Route(name="across", points=((1.2, 0.6),)),))
+    config = replace(SHORT, navigator="waypoints", time_limit=30.0)
+    by_name = run_episode(replace(config, waypoints="across"), plan=plan)
+    by_text = run_episode(replace(config, waypoints="1.2,0.6"), plan=plan)
+    assert by_name.stop_reason == by_text.stop_reason == "complete"
+    assert np.array_equal(by_name.track.pose_world, by_text.track.pose_world)
+    with pytest.raises(TestbedError, match=r"waypoints: 'up'; must be .*\(across\)"):
+        run_episode(replace(config, waypoints="up"), plan=plan)
+    with pytest.raises(TestbedError, match="waypoints: none"):
+        run_episode(config, plan=plan)

@@ -52,3 +52,15 @@ def test_a_window_far_away_changes_nothing() -> None:
     truth = random_truth(np.random.default_rng(0))
     grid = OccupancyGrid(GridConfig(resolution=0.05, rows=10, columns=10))
     assert CoverageMeter(truth).measure(grid, (90.0, 91.0, 90.0, 91.0)) == 0.0
+
+
+def test_a_map_drawn_anew_is_counted_whole_whatever_the_window() -> None:
+    truth = random_truth(np.random.default_rng(0))
+    grid = OccupancyGrid(GridConfig(resolution=0.05, origin=(-1.0, 0.5), rows=150, columns=130))
+    meter = CoverageMeter(truth)
+    far = (90.0, 91.0, 90.0, 91.0)
+    assert meter.measure(grid, far) == 0.0
+    grid.log_odds[:] = -5.0
+    assert meter.measure(grid, far) == 0.0
+    grid.redraws += 1
+    assert meter.measure(grid, far) == 1.0

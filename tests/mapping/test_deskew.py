@@ -72,3 +72,13 @@ def test_messages_that_are_broken_or_late_are_ignored() -> None:
     track.add([message(3.0, 9.0, 0.0, 0.0, v=np.inf)])
     assert track.newest is not None
     assert track.newest.tolist() == [1.0, 0.0, 0.0]
+
+
+def test_a_scan_between_messages_seconds_apart_has_its_pose() -> None:
+    track = OdometryTrack()
+    for k in range(10):
+        track.add([message(3.0 * k, 1.5 * k, 0.0, 0.0)])
+    poses = track.poses_at([24.0, 26.0, 27.0])
+    assert poses is not None
+    assert poses[:, 0] == pytest.approx([12.0, 13.0, 13.5])
+    assert track.poses_at([0.0]) is None  # nobody asks for it any more: memory stays bounded

@@ -1,6 +1,6 @@
 import numpy as np
 
-from mapping.messages import Imu, LaserScan, Odometry
+from mapping.messages import Imu, LaserScan, Odometry, turn_rates
 
 
 def observation() -> dict[str, np.ndarray]:
@@ -44,3 +44,11 @@ def test_rows_become_messages_with_the_fields_of_ros() -> None:
     assert imu.orientation.tolist() == [12.0, 13.0, 14.0, 15.0]
     assert imu.angular_velocity.tolist() == [16.0, 17.0, 18.0]
     assert imu.linear_acceleration.tolist() == [19.0, 20.0, 21.0]
+
+
+def test_turn_rates_are_those_of_the_messages_however_they_are_held() -> None:
+    rows = np.arange(33.0).reshape(3, 11)
+    lazy = Imu.from_observation({"imu": rows})
+    assert turn_rates(lazy).tolist() == [[0.0, 7.0], [11.0, 18.0], [22.0, 29.0]]
+    assert turn_rates(list(lazy)).tolist() == turn_rates(lazy).tolist()
+    assert turn_rates([]).shape == (0, 2)

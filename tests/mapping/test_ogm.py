@@ -12,7 +12,7 @@ from mapping.grid import FREE, OCCUPIED, GridConfig
 from mapping.messages import LaserScan, Odometry, Twist
 from mapping.ogm import BEHIND_CELLS, WIDEST_WEDGE, Ogm, OgmConfig
 from mapping.scan_polygon import AGREE_SIGMAS, AGREE_SLOPE, STRIP_HALF_WIDTH
-from mapping.sensor_model import range_sigma
+from mapping.sensor_model import SICK_LMS, range_sigma
 from tests.mapping.arena import arena_truth, circling, drive, scan_at, standing
 
 COARSE = GridConfig(resolution=0.05, origin=(-4.0, -4.0), rows=160, columns=160, grows=False)
@@ -161,6 +161,28 @@ def test_a_drive_with_the_datasheets_noise_makes_a_sharp_map() -> None:
     assert scores.coverage >= 0.97
     assert scores.free_iou is not None
     assert scores.free_iou >= 0.96
+
+
+def test_a_far_wall_that_a_precise_lidar_sees_once_is_drawn_as_strongly_as_a_near_one() -> None:
+    ranges = np.full(360, np.inf, dtype=np.float32)
+    ranges[0], ranges[90] = 6.0, 1.0
+    seen = LaserScan(stamp=0.0, ranges=ranges, range_max=81.0)
+    config = OgmConfig(max_range=81.0, range_noise=SICK_LMS, lidar_pose_base=(0.0, 0.0, 0.0))
+    mapper = Ogm(config, grid=GridConfig(resolution=0.05))
+    mapper.update(seen, STILL)
+    ahead, left = mapper.grid.world_to_cell([[6.01, 0.0], [0.0, 1.01]])
+    assert mapper.grid.log_odds[tuple(ahead)] == pytest.approx(config.hit)
+    assert mapper.grid.log_odds[tuple(left)] == pytest.approx(config.hit)
+
+
+def test_a_lidar_that_reaches_80_m_frees_no_more_without_a_return_than_an_lds_01() -> None:
+    nothing = LaserScan(stamp=0.0, ranges=np.full(360, np.inf, dtype=np.float32), range_max=81.0)
+    config = OgmConfig(max_range=81.0, range_noise=SICK_LMS)
+    mapper = Ogm(config, grid=GridConfig(resolution=0.05))
+    mapper.update(nothing, STILL)
+    y, x = np.nonzero(mapper.grid.log_odds)
+    reached = np.hypot(*(mapper.grid.cell_to_world(np.column_stack((y, x))) + [0.032, 0.0]).T)
+    assert reached.max() == pytest.approx(3.5, abs=0.05), "a cell's edge"
 
 
 def test_the_grid_grows_no_more_than_the_scan_needs() -> None:

@@ -4,8 +4,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mapping.errors import TestbedError
-from mapping.geometry import compose, inverse
-from mapping.trajectory import Trajectory, path_length, score_trajectory, umeyama
+from mapping.geometry import between, compose
+from mapping.trajectory import Trajectory, completed, path_length, poses_at
 
 STAMPS = np.linspace(0.0, 10.0, 101)
 
@@ -17,61 +17,50 @@ def circle() -> Trajectory:
     return Trajectory(stamps=STAMPS, poses=compose(np.zeros(3), poses))
 
 
-def moved(trajectory: Trajectory, pose: tuple[float, float, float]) -> Trajectory:
-    return Trajectory(stamps=trajectory.stamps, poses=compose(pose, trajectory.poses))
+def every(nth: int, trajectory: Trajectory) -> Trajectory:
+    return Trajectory(stamps=trajectory.stamps[::nth], poses=trajectory.poses[::nth])
 
 
-def test_the_truth_itself_has_no_error() -> None:
-    scores = score_trajectory(circle(), circle())
-    assert (scores.ate_rmse_m, scores.ate_max_m) == pytest.approx((0.0, 0.0))
-    assert scores.yaw_error_max_deg == pytest.approx(0.0)
+@given(
+    frame=st.tuples(st.floats(-50, 50), st.floats(-50, 50), st.floats(-3, 3)),
+    nth=st.integers(1, 60),
+)
+@settings(max_examples=30, deadline=None)
+def test_odometry_without_error_fills_the_gaps_exactly_in_any_frame(
+    frame: tuple[float, float, float], nth: int
+) -> None:
+    odometry = circle()
+    truth = Trajectory(stamps=STAMPS, poses=compose(frame, odometry.poses))
+    filled = completed(every(nth, truth), odometry)
+    assert np.allclose(between(filled.poses, truth.poses), 0.0, atol=1e-9)
 
 
-def test_a_shift_is_the_error_everywhere() -> None:
-    scores = score_trajectory(moved(circle(), (0.3, 0.4, 0.0)), circle())
-    assert scores.ate_rmse_m == pytest.approx(0.5)
-    assert scores.ate_max_m == pytest.approx(0.5)
+def test_a_pose_that_is_known_stays_as_it_is() -> None:
+    known = every(10, circle())
+    bent = circle().poses + np.column_stack((STAMPS, 0.1 * STAMPS**2, 0.05 * STAMPS))
+    filled = completed(known, Trajectory(stamps=STAMPS, poses=bent))
+    assert np.allclose(between(filled.poses[::10], known.poses), 0.0, atol=1e-9)
 
 
-def test_a_drift_that_grows_evenly_has_the_rmse_of_a_ramp() -> None:
-    poses = circle().poses + np.column_stack((STAMPS / 10.0, np.zeros((101, 2))))
-    scores = score_trajectory(Trajectory(stamps=STAMPS, poses=poses), circle())
-    assert scores.ate_max_m == pytest.approx(1.0)
-    assert scores.ate_rmse_m == pytest.approx(np.sqrt(np.mean((STAMPS / 10.0) ** 2)))
+def test_a_slip_is_spread_over_the_time_in_which_it_came_about() -> None:
+    standing = Trajectory(stamps=np.arange(5.0), poses=np.zeros((5, 3)))
+    known = Trajectory(stamps=np.array([0.0, 4.0]), poses=np.array([[0, 0, 0], [0.4, 0, 0.2]]))
+    filled = completed(known, standing)
+    assert np.allclose(filled.poses[:, 0], [0.0, 0.1, 0.2, 0.3, 0.4])
+    assert np.allclose(filled.poses[:, 2], [0.0, 0.05, 0.1, 0.15, 0.2])
 
 
-def test_yaw_errors_are_taken_the_short_way_round() -> None:
-    one = Trajectory(stamps=STAMPS, poses=np.tile([0.0, 0.0, 3.1], (101, 1)))
-    other = Trajectory(stamps=STAMPS, poses=np.tile([0.0, 0.0, -3.1], (101, 1)))
-    expected = np.degrees(2.0 * np.pi - 6.2)
-    assert score_trajectory(one, other).yaw_error_max_deg == pytest.approx(expected)
+def test_outside_of_the_known_poses_odometry_alone_tells() -> None:
+    line = np.column_stack((np.arange(5.0), np.zeros((5, 2))))
+    known = Trajectory(stamps=np.array([2.0]), poses=np.array([[0.0, 0.0, np.pi / 2]]))
+    filled = completed(known, Trajectory(stamps=np.arange(5.0), poses=line))
+    assert np.allclose(filled.poses[:, :2], [[0, -2], [0, -1], [0, 0], [0, 1], [0, 2]])
 
 
-@given(pose=st.tuples(st.floats(-5, 5), st.floats(-5, 5), st.floats(-3, 3)))
-@settings(max_examples=40, deadline=None)
-def test_alignment_undoes_any_rigid_move(pose: tuple[float, float, float]) -> None:
-    scores = score_trajectory(moved(circle(), pose), circle(), align=True)
-    assert scores.ate_max_m == pytest.approx(0.0, abs=1e-9)
-    assert compose(pose, scores.alignment) == pytest.approx(np.zeros(3), abs=1e-9)
-    assert scores.alignment == pytest.approx(tuple(inverse(pose)), abs=1e-9)
-
-
-def test_stamps_in_between_are_interpolated() -> None:
-    line = np.column_stack((STAMPS, 0.0 * STAMPS, 0.0 * STAMPS))
-    half = STAMPS[:-1] + 0.05
-    estimate = Trajectory(stamps=half, poses=np.column_stack((half, 0.0 * half, 0.0 * half)))
-    scores = score_trajectory(estimate, Trajectory(stamps=STAMPS, poses=line))
-    assert scores.ate_max_m == pytest.approx(0.0, abs=1e-12)
-
-
-def test_what_lies_outside_the_truths_time_is_left_out() -> None:
-    late = Trajectory(stamps=STAMPS + 100.0, poses=circle().poses)
-    with pytest.raises(TestbedError, match="no stamp"):
-        score_trajectory(late, circle())
-
-
-def test_points_that_coincide_are_moved_without_being_turned() -> None:
-    assert umeyama(np.ones((3, 2)), np.zeros((3, 2))) == pytest.approx([-1.0, -1.0, 0.0])
+def test_yaw_in_between_goes_the_short_way_round() -> None:
+    turning = Trajectory(stamps=np.arange(2.0), poses=np.array([[0, 0, 3.0], [0, 0, -3.0]]))
+    halfway = poses_at(turning, [0.5])[0]
+    assert abs(halfway[2]) == pytest.approx(np.pi)
 
 
 def test_path_length_adds_up_the_steps() -> None:

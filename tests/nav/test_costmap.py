@@ -117,3 +117,13 @@ def test_a_place_outside_the_map_has_no_clearance() -> None:
 def test_an_inflation_inside_the_robot_is_refused() -> None:
     with pytest.raises(TestbedError, match="inflation"):
         CostmapConfig(inflation=0.05)
+
+
+def test_a_map_drawn_anew_is_taken_over_whole_wherever_the_robot_is() -> None:
+    before, after = random_grid(1), random_grid(2)
+    after.redraws = 1
+    for look in (Costmap.refresh, Costmap.glance):
+        costmap = costmap_of(before)
+        look(costmap, after, (0.1, 0.1), 0.2)
+        assert np.array_equal(costmap.states, costmap_of(after).states)
+        assert np.array_equal(costmap.cost, costmap_of(after).cost)

@@ -1,0 +1,1 @@
+"""Turns scans, odometry and gyroscope into maps that stay straight: fusion, matching, SLAM."""

@@ -1,0 +1,120 @@
+"""Graph SLAM: scans matched with the local map in front, GTSAM behind, the map drawn anew between.
+
+Every match is an edge of a graph of keyframes; places seen before add edges that close loops, and
+the poses that agree best with all of them are where the map is drawn from.
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from mapping.geometry import Pose, between, compose
+from mapping.grid import GridConfig
+from mapping.slam.loop_closer import LoopCloser, LoopConfig
+from mapping.slam.pose_graph_optimizer import PoseGraphOptimizer
+from mapping.slam.scan_cloud import ScanCloud
+from mapping.slam.scan_match import ScanMatch, ScanMatchConfig
+from mapping.slam.sweep import Sweep
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GraphConfig(ScanMatchConfig):
+    """Settings of graph SLAM; the default is a Burger."""
+
+    way: float = 8.0
+    """Keyframes farther away along the matches than this [m] are no part of the local map until a
+    loop is closed."""
+    rest: int = 2
+    """After a loop, so many keyframes look for none."""
+    redraw_above: float = 0.02
+    """The map is drawn anew when something in it lies farther than this from its place [m]."""
+    redraw_sweeps: int = 3
+    """So many scans of the new map are drawn in one update."""
+    keep_shift: float = 0.08
+    """A scan is kept for drawing when the robot moved this far since the last one kept [m]."""
+    keep_turn: float = 0.15
+    """Or turned so far [rad]."""
+    kept_each: int = 6
+    """At most so many are kept for each keyframe."""
+    last_rounds: int = 10
+    """Steps of the last optimisation."""
+    loops: LoopConfig = field(default_factory=LoopConfig)
+
+
+class GraphSlam(ScanMatch):
+    """Scan matching that closes loops."""
+
+    config: GraphConfig
+
+    def __init__(
+        self,
+        config: GraphConfig | None = None,
+        *,
+        start_pose_map: ArrayLike = (0.0, 0.0, 0.0),
+        grid: GridConfig | None = None,
+    ) -> None:
+        config = config or GraphConfig()
+        self.way = config.way
+        super().__init__(config, start_pose_map=start_pose_map, grid=grid)
+        self.loops = 0
+        """How many edges that close loops there are."""
+        self._closer = LoopCloser(self.graph, self._local_config(), config.matcher, config.loops)
+        self._optimizer = PoseGraphOptimizer()
+        self._resting = 0
+        self._may_keep = 0
+        self._kept_pose: Pose | None = None
+
+    def finish(self) -> None:
+        """Optimise to the end and draw the whole map anew."""
+        if self.loops:
+            self._correct(self.config.last_rounds)
+        if self.painter.is_redrawing or self.painter.error > self.grid.resolution:
+            self.painter.redraw()
+            self.painter.work(len(self.painter))
+            self.pose_map = self._pose_now()
+
+    def _add_keyframe(self, cloud: ScanCloud) -> int:
+        """Also look whether the keyframe closes a loop."""
+        number = super()._add_keyframe(cloud)
+        self._may_keep, self._kept_pose = self.config.kept_each, None
+        self._resting = max(self._resting - 1, 0)
+        if self._resting == 0:
+            self._close_loops(number)
+        return number
+
+    def _close_loops(self, number: int) -> None:
+        edges = self._closer.edges(number, self._local.keyframes)
+        for edge in edges:
+            self.graph.connect(edge)
+        if edges:
+            self.loops += len(edges)
+            self._resting = self.config.rest
+            place = between(self.graph.poses[number], self._pose)
+            self._correct()
+            self._pose = compose(self.graph.poses[number], place)
+
+    def _correct(self, rounds: int = 1) -> None:
+        """Move the keyframes to where all edges agree best."""
+        reference = self._nearest
+        place = between(self.graph.poses[reference], self._pose)
+        self.graph.correct(self._optimizer.optimize(self.graph.poses, self.graph.edges, rounds))
+        self._pose = compose(self.graph.poses[reference], place)
+
+    def _keep(self, sweep: Sweep) -> None:
+        """Keep the scan if it shows something new; go on drawing the new map, or begin one."""
+        config = self.config
+        if self._may_keep > 0 and self._moved_enough():
+            self._may_keep -= 1
+            self._kept_pose = self._pose
+            self.painter.keep(self._nearest, self._pose, sweep)
+        self.painter.work(config.redraw_sweeps)
+        if not self.painter.is_redrawing and self.painter.error > config.redraw_above:
+            self.painter.redraw()
+
+    def _moved_enough(self) -> bool:
+        """Whether the robot has moved since the last scan that was kept."""
+        if self._kept_pose is None:
+            return True
+        x, y, turn = between(self._kept_pose, self._pose)
+        return bool(np.hypot(x, y) > self.config.keep_shift or abs(turn) > self.config.keep_turn)

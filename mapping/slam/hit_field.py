@@ -1,0 +1,81 @@
+"""The field that scans are matched with: every reading smeared into a bell, all bells added up.
+
+Its logarithm is the log likelihood of a reading (a kernel density estimate with a floor for
+readings of unknown things), so a wall seen often is no broader than one seen once, and its middle
+stays where the readings' mean is, however coarse the cells: bells are added at the exact place.
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from mapping.slam.correlative_kernels import block_maxima
+from mapping.slam.hit_field_kernels import shares_of, smear
+
+BELL_SUM = float(np.sqrt(2.0 * np.pi))
+"""Bells one cell apart along a wall add up to this height, in the height of one."""
+
+
+class HitField:
+    """A square field of readings around a place."""
+
+    def __init__(self, resolution: float, half_width: float, outlier: float) -> None:
+        """Make an empty field.
+
+        Args:
+            resolution: Edge of a cell, and standard deviation of a bell [m].
+            half_width: From the middle to the edges [m].
+            outlier: Density that stands for readings of things not in the field yet; a wall seen
+                by one scan has density 1.
+        """
+        self.resolution = resolution
+        self.outlier = outlier
+        self._half_cells = round(half_width / resolution)
+        side = 2 * self._half_cells
+        self.density: NDArray[np.float32] = np.zeros((side, side), dtype=np.float32)
+        self.corner = np.zeros(2)
+        self._maxima: NDArray[np.uint8] | None = None
+
+    @property
+    def center(self) -> NDArray[np.float64]:
+        """The middle of the field ``(2,)`` [m]."""
+        return self.corner + self._half_cells * self.resolution
+
+    def clear(self, center: ArrayLike) -> None:
+        """Empty the field and lay its middle on a place ``(2,)`` [m]."""
+        cells = np.round(np.asarray(center, dtype=np.float64) / self.resolution)
+        self.corner = (cells - self._half_cells) * self.resolution
+        self.density[:] = 0.0
+        self._maxima = None
+
+    def add(self, pose: ArrayLike, surface: NDArray[np.float32]) -> None:
+        """Smear the walls that a scan saw into the field.
+
+        Args:
+            pose: Where it was taken ``(3,)``, in the frame of the field.
+            surface: The walls ``(n, 3)``: x, y [m] and weight, a resolution apart.
+        """
+        self._maxima = None
+        smear(self.density, self.to_cells(pose), surface, self.resolution, 1.0 / BELL_SUM)
+
+    def maxima(self, levels: int) -> NDArray[np.uint8]:
+        """Block maxima ``(levels or more, rows, columns)`` of the share of readings that are known.
+
+        A share, in 255ths, is that of readings at a cell that belong to known walls.
+        """
+        if self._maxima is None or len(self._maxima) < levels:
+            shares = np.empty(self.density.shape, dtype=np.uint8)
+            shares_of(self.density, shares)
+            self._maxima = block_maxima(shares, levels)
+        return self._maxima
+
+    def to_cells(self, pose: ArrayLike) -> NDArray[np.float64]:
+        """A pose ``(3,)`` with its position in cells from the corner."""
+        x, y, yaw = np.asarray(pose, dtype=np.float64)
+        left, bottom = self.corner
+        return np.array([(x - left) / self.resolution, (y - bottom) / self.resolution, yaw])
+
+    def to_metres(self, pose: ArrayLike) -> NDArray[np.float64]:
+        """The pose ``(3,)`` that ``to_cells`` made this one of."""
+        x, y, yaw = np.asarray(pose, dtype=np.float64)
+        left, bottom = self.corner
+        return np.array([left + x * self.resolution, bottom + y * self.resolution, yaw])

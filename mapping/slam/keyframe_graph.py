@@ -1,0 +1,169 @@
+"""The scans that a map is made of, where they were taken, and the matches that say so."""
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_matrix
+from scipy.sparse.csgraph import dijkstra
+
+from mapping.geometry import Pose, between
+from mapping.slam.scan_cloud import ScanCloud
+
+FIRST_ROOM = 256
+"""Keyframes and edges held at the start; tables double when they are full."""
+
+TURN_LENGTH = 0.5
+"""A radian of turning counts as this many metres of way: views change with it as much."""
+
+STEP_LENGTH = 0.02
+"""What an edge counts at least [m], so that matches on the spot are not free."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Edge:
+    """A match: where one keyframe was taken, seen from another."""
+
+    a: int
+    """The keyframe seen from."""
+    b: int
+    """The keyframe seen."""
+    pose: Pose
+    """Pose of ``b`` in the frame of ``a`` ``(3,)``."""
+    covariance: NDArray[np.float64]
+    """Its covariance ``(3, 3)`` in the frame of ``b``."""
+    is_loop: bool
+    """Whether it closes a loop: such an edge may be wrong and is weighed robustly."""
+
+
+class KeyframeGraph:
+    """Keyframes in the order in which they were taken, and the edges between them."""
+
+    def __init__(self) -> None:
+        self.clouds: list[ScanCloud] = []
+        self.edges: list[Edge] = []
+        self._poses = np.empty((FIRST_ROOM, 3))
+        self._looks = np.empty((FIRST_ROOM, 2))
+        self._ends = np.empty((FIRST_ROOM, 2), dtype=np.int64)
+        self._lengths = np.empty(FIRST_ROOM)
+        self._variances: dict[tuple[int, int], tuple[float, float]] = {}
+        self.corrections = 0
+        """How often the poses were changed after the fact."""
+
+    def __len__(self) -> int:
+        return len(self.clouds)
+
+    @property
+    def poses(self) -> Pose:
+        """Where each keyframe was taken ``(n, 3)``, in the map frame, as far as is known now."""
+        return self._poses[: len(self.clouds)]
+
+    @property
+    def views(self) -> NDArray[np.float64]:
+        """The middle of what each keyframe saw ``(n, 2)``, in the map frame."""
+        x, y, yaw = self.poses.T
+        look_x, look_y = self._looks[: len(self.clouds)].T
+        cos, sin = np.cos(yaw), np.sin(yaw)
+        return np.column_stack((x + cos * look_x - sin * look_y, y + sin * look_x + cos * look_y))
+
+    def add(self, pose: Pose, cloud: ScanCloud) -> int:
+        """Add a keyframe without edges; returns its number."""
+        number = len(self.clouds)
+        self._poses, self._looks = _grown(self._poses, number), _grown(self._looks, number)
+        self._poses[number] = pose
+        self._looks[number] = look_of(cloud)
+        self.clouds.append(cloud)
+        return number
+
+    def connect(self, edge: Edge) -> None:
+        """Add an edge between keyframes that there are."""
+        number = len(self.edges)
+        self._ends, self._lengths = _grown(self._ends, number), _grown(self._lengths, number)
+        self._ends[number] = edge.a, edge.b
+        dx, dy, turn = edge.pose
+        self._lengths[number] = STEP_LENGTH + np.hypot(dx, dy) + TURN_LENGTH * abs(turn)
+        variances = (
+            float(max(edge.covariance[0, 0], edge.covariance[1, 1])),
+            float(edge.covariance[2, 2]),
+        )
+        pair = (min(edge.a, edge.b), max(edge.a, edge.b))
+        self._variances[pair] = min(variances, self._variances.get(pair, variances))
+        self.edges.append(edge)
+
+    def correct(self, poses: Pose) -> None:
+        """Take better poses ``(n, 3)`` of all keyframes."""
+        self._poses[: len(poses)] = poses
+        self.corrections += 1
+
+    def ways(
+        self, keyframe: int, limit: float = np.inf
+    ) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+        """Length of the shortest way along edges from a keyframe to each ``(n,)`` [m].
+
+        Keyframes farther than ``limit`` are infinitely far. The second array ``(n,)`` holds the
+        keyframe before each on its way, negative where there is none.
+        """
+        count, edges = len(self.clouds), len(self.edges)
+        a, b = self._ends[:edges].T
+        lengths = self._lengths[:edges]
+        graph = csr_matrix((lengths, (a, b)), shape=(count, count))
+        distances, before = dijkstra(
+            graph, directed=False, indices=keyframe, limit=limit, return_predecessors=True
+        )
+        return distances, before
+
+    def uncertainty(
+        self, keyframe: int, other: int, before: NDArray[np.int32]
+    ) -> tuple[float, float]:
+        """Variance of one keyframe's place [m^2] and yaw [rad^2] seen from another.
+
+        Summed along the shortest way between them (Olson 2009, "Recognizing Places Using
+        Spectrally Clustered Local Matches"): an upper bound, as other ways can only help.
+
+        Args:
+            keyframe: The keyframe that ``ways`` was asked from.
+            other: The other one.
+            before: The second array that ``ways`` gave.
+        """
+        chain = [other]
+        while chain[-1] != keyframe and before[chain[-1]] >= 0:
+            chain.append(int(before[chain[-1]]))
+        pairs = pairwise(chain)
+        variances = np.array([self._variances[min(a, b), max(a, b)] for a, b in pairs])
+        variances = variances.reshape(-1, 2)
+        arms = self.poses[chain[1:], :2] - self.poses[keyframe, :2]
+        place = variances[:, 0].sum() + (variances[:, 1] * (arms**2).sum(axis=1)).sum()
+        return float(place), float(variances[:, 1].sum())
+
+
+def look_of(cloud: ScanCloud) -> NDArray[np.float64]:
+    """The middle of what a scan saw ``(2,)`` in its own frame: near 0 if it looked all around."""
+    return cloud.points.mean(axis=0) if len(cloud) else np.zeros(2)
+
+
+def edge_between(
+    a: int,
+    b: int,
+    pose_a: Pose,
+    pose_b: Pose,
+    covariance_map: NDArray[np.float64],
+    *,
+    is_loop: bool = False,
+) -> Edge:
+    """The edge that a match makes, given the covariance of ``pose_b`` in the map frame."""
+    cos, sin = np.cos(pose_b[2]), np.sin(pose_b[2])
+    turn = np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]])
+    return Edge(
+        a=a,
+        b=b,
+        pose=between(pose_a, pose_b),
+        covariance=turn @ covariance_map @ turn.T,
+        is_loop=is_loop,
+    )
+
+
+def _grown(table: NDArray[Any], row: int) -> NDArray[Any]:
+    """The table, twice as long if it does not have the row yet."""
+    return table if row < len(table) else np.concatenate((table, np.empty_like(table)))

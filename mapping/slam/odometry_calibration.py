@@ -1,0 +1,131 @@
+"""Learns from matched scans how far the odometry errs each time: scale, drift and turn."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from mapping.geometry import Pose, wrap_to_pi
+
+SMALLEST = np.diag(np.square([0.002, 0.002, 0.001]))
+"""No motion is surer than this [m^2, m^2, rad^2]: scans come at odd times between messages."""
+
+LARGEST_SURPRISE = 9.0
+"""A surprise beyond three standard deviations counts as one of three."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CalibrationConfig:
+    """How wrong the odometry may be, systematically, and how fast that changes.
+
+    The three errors are those of a differential drive (Borenstein and Feng 1996): of the wheels'
+    mean radius, of the difference between the radii, and of the wheel base.
+    """
+
+    scale_sigma: float = 0.02
+    """Prior standard deviation of the relative error of the way."""
+    drift_sigma: float = 0.05
+    """The same of the turn that is made in each metre of way [rad/m]."""
+    turn_sigma: float = 0.05
+    """The same of the relative error of turns."""
+    first_noise: float = 100.0
+    """How many times the motion model's variances to expect at first, and at most: a robot that
+    nobody has measured may be ten times worse than a Burger."""
+    offset_sigma: float = 0.05
+    """The same of how far ahead of its centre the robot turns about a point, as a lidar mounted
+    elsewhere than the log says makes it seem to [m]."""
+    least_share: float = 0.01
+    """No way or turn is surer than this share of itself, nor is a heading by this for each metre."""
+    turn_arm: float = 0.2
+    """A turn moves a place as much as a way of this for each radian [m]."""
+    noise_step: float = 0.05
+    """How fast that is learned: relative change by a match as good, or as bad, as can be."""
+    wander: float = 1e-4
+    """Share of the prior variance that each match gives back, as errors change with the floor."""
+
+
+class OdometryCalibration:
+    """A Kalman filter of the three systematic errors."""
+
+    def __init__(self, config: CalibrationConfig | None = None) -> None:
+        self.config = config or CalibrationConfig()
+        config = self.config
+        sigmas = (
+            config.scale_sigma,
+            config.drift_sigma,
+            config.turn_sigma,
+            config.offset_sigma,
+        )
+        self._prior = np.diag(np.square(sigmas))
+        self.errors = np.zeros(4)
+        """Relative error of the way, turn per metre [rad/m], relative error of turns, offset
+        ahead of the point turned about [m] ``(4,)``."""
+        self.ahead_noise = self.aside_noise = self.turn_noise = self.config.first_noise
+        """How many times larger the variances are than the motion model says."""
+        self.covariance = self._prior.copy()
+
+    def corrected(self, motion: ArrayLike) -> Pose:
+        """A motion ``(3,)`` of the odometry, without the errors learned so far."""
+        motion = np.asarray(motion, dtype=np.float64)
+        scale, drift, turn, offset = self.errors
+        x, y, yaw = motion
+        bent = drift * x
+        # the drift bends the way evenly: its end lies half of the bend off
+        half = 0.5 * bent
+        return np.array(
+            [
+                (1.0 + scale) * (x - half * y),
+                (1.0 + scale) * (y + half * x) + offset * yaw,
+                wrap_to_pi(yaw * (1.0 + turn) + bent),
+            ]
+        )
+
+    def widened(self, motion: Pose, covariance: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The covariance of a motion ``(3, 3)``, as much wider as the surprises so far ask for.
+
+        Errors ahead, aside and in turning are taken to be independent: that one follows from
+        another holds for a robot whose wheels never slip sideways.
+        """
+        ahead, aside, turn = np.diag(covariance)
+        noise = np.array([self.ahead_noise, self.aside_noise, self.turn_noise])
+        way, angle = float(np.hypot(motion[0], motion[1])), abs(float(motion[2]))
+        place = way + self.config.turn_arm * angle
+        least = self.config.least_share * np.array([place, place, angle + way])
+        return np.diag(noise * ((ahead, max(ahead, aside), turn) + least**2)) + SMALLEST
+
+    def learn(self, motion: Pose, matched: Pose, covariance: NDArray[np.float64]) -> None:
+        """Compare a motion of the odometry with the same motion as matching gave it.
+
+        Args:
+            motion: What the odometry said ``(3,)``.
+            matched: What matching gave ``(3,)``.
+            covariance: Of the difference between the two but for systematic errors ``(3, 3)``.
+        """
+        self.covariance = self.covariance + self.config.wander * self._prior
+        ahead, aside, turn = motion
+        # a drift bends the way evenly, so that its end lies half of the bend aside
+        rows = np.array(
+            [
+                [ahead, -0.5 * ahead * aside, 0.0, 0.0],
+                [aside, 0.5 * ahead * ahead, 0.0, turn],
+                [0.0, ahead, turn, 0.0],
+            ]
+        )
+        seen = matched - motion
+        seen[2] = wrap_to_pi(seen[2])
+        noise = covariance
+        spread = rows @ self.covariance @ rows.T + noise
+        surprise = seen - rows @ self.errors
+        self._learn_noise(surprise, spread)
+        gain = np.linalg.solve(spread, rows @ self.covariance).T
+        self.errors = self.errors + gain @ surprise
+        self.covariance = self.covariance - gain @ rows @ self.covariance
+
+    def _learn_noise(self, surprise: NDArray[np.float64], spread: NDArray[np.float64]) -> None:
+        """Move the noise towards what makes surprises as large as they are expected to be."""
+        ratios = np.minimum(surprise**2 / np.diag(spread), LARGEST_SURPRISE)
+        step = np.exp(self.config.noise_step * (ratios - 1.0))
+        most = self.config.first_noise
+        self.ahead_noise = float(np.clip(self.ahead_noise * step[0], 1.0, most))
+        self.aside_noise = float(np.clip(self.aside_noise * step[1], 1.0, most))
+        self.turn_noise = float(np.clip(self.turn_noise * step[2], 1.0, most))

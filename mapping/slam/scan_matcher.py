@@ -1,0 +1,185 @@
+"""Finds the pose from which a scan was taken: correlative search, then Newton's method to sub-cell.
+
+The search (Olson 2009) looks at every pose within the prediction's uncertainty, so that no bad
+start leads astray; Newton's method on the log likelihood, with the prediction as prior, then finds
+the top between the cells. What a scan cannot tell, as where along a bare corridor it was taken, is
+left to the prediction, and the covariance says so.
+"""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from mapping.errors import TestbedError
+from mapping.geometry import Pose, wrap_to_pi
+from mapping.slam.climb_kernels import climb
+from mapping.slam.correlative_search import search_window
+from mapping.slam.hit_field import HitField
+from mapping.slam.scan_cloud import ScanCloud
+
+LEEWAY = np.diag(np.square([0.05, 0.05, 0.05]))
+"""What the prediction may err more than it says [m^2, m^2, rad^2] while a scan is heard: else a
+prediction that is too sure of itself would never be found out."""
+
+SHARPEST = np.diag(np.square([0.002, 0.002, 0.001]))
+"""No scan says better than this where it was taken [m^2, m^2, rad^2]."""
+
+FLAT = 1e-9
+"""A curvature smaller than this share of the largest is one that was taken out."""
+
+NOTHING_TOLD = np.eye(3)
+"""Information [1/m^2, 1/m^2, 1/rad^2] of a scan that tells nothing."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MatcherConfig:
+    """How scans are matched; tuned on recorded and simulated logs as the README tells."""
+
+    togetherness: float = 3.0
+    """So many readings count as one: those of one wall err together."""
+    least_curvature: float = 0.02
+    """Least information per reading [1/cells^2] for a direction to be believed at all; a wall that
+    stands across gives about 0.5 for each reading on it."""
+    least_score: float = 0.35
+    """A match that explains a smaller share of the scan is refused."""
+    sharp_start: float = 1.0
+    """A prediction this sure [cells, one standard deviation at the end of a typical beam] needs no
+    search."""
+    search_sigmas: float = 3.0
+    """How many standard deviations of the prediction are searched."""
+    widest_shift: float = 0.6
+    """The search goes no farther than this [m]."""
+    widest_turn: float = 0.5
+    """Nor farther than this [rad]."""
+
+    def __post_init__(self) -> None:
+        """Refuse figures that make no matcher."""
+        for name in self.__slots__:
+            value = getattr(self, name)
+            if not (math.isfinite(value) and value > 0.0):
+                raise TestbedError(f"matcher {name}: {value}; must be a finite number above 0")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Match:
+    """What matching a scan gave."""
+
+    pose: Pose
+    """The pose ``(3,)``; the prediction when the match was refused."""
+    covariance: NDArray[np.float64]
+    """Its covariance ``(3, 3)`` over x [m], y [m], yaw [rad]; the prediction's when refused, and
+    along a direction that the scan tells nothing about."""
+    score: float
+    """Share of the scan that lies on known walls, 0..1."""
+    refused: bool
+    """Whether the scan told nothing that could be believed."""
+    seen: Pose
+    """The pose that the scan alone asks for ``(3,)``, the yaw not wrapped."""
+    seen_covariance: NDArray[np.float64]
+    """How far that is to be trusted ``(3, 3)``."""
+
+
+def match_scan(
+    field: HitField,
+    cloud: ScanCloud,
+    predicted: ArrayLike,
+    covariance: NDArray[np.float64],
+    config: MatcherConfig,
+) -> Match:
+    """Match a scan with a field.
+
+    Args:
+        field: The field.
+        cloud: The scan.
+        predicted: Where it is thought to have been taken ``(3,)``, in the frame of the field.
+        covariance: How sure that is ``(3, 3)``.
+        config: How to match.
+    """
+    predicted = np.asarray(predicted, dtype=np.float64)
+    refused = Match(
+        pose=predicted,
+        covariance=covariance,
+        score=0.0,
+        refused=True,
+        seen=predicted,
+        seen_covariance=np.linalg.inv(NOTHING_TOLD),
+    )
+    if len(cloud) == 0:
+        return refused
+    points = cloud.points / field.resolution
+    prior = field.to_cells(predicted)
+    start = prior
+    if _uncertainty(covariance, points, field.resolution) > config.sharp_start:
+        start = _searched(field, cloud, prior, covariance, config)
+    scale = np.array([field.resolution, field.resolution, 1.0])
+    pose, curvature, scatter, score = climb(
+        field.density,
+        start,
+        prior,
+        np.linalg.inv(covariance + LEEWAY) * np.outer(scale, scale),
+        points,
+        cloud.normals,
+        cloud.weights,
+        field.outlier,
+        config.least_curvature,
+    )
+    if score < config.least_score or not np.any(curvature):
+        return replace(refused, score=score)
+    seen = field.to_metres(pose)
+    per_metre = np.outer(1.0 / scale, 1.0 / scale)
+    told = _information(curvature * per_metre, scatter * per_metre * config.togetherness)
+    fused = np.linalg.inv(told + np.linalg.inv(covariance))
+    offset = seen - predicted
+    offset[2] = wrap_to_pi(offset[2])
+    found = predicted + fused @ told @ offset
+    found[2] = wrap_to_pi(found[2])
+    return Match(
+        pose=found,
+        covariance=fused,
+        score=score,
+        refused=False,
+        seen=predicted + offset,
+        seen_covariance=np.linalg.inv(told + NOTHING_TOLD),
+    )
+
+
+def _information(
+    curvature: NDArray[np.float64], scatter: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """The information of a scan: the inverse of its sandwich covariance (Huber 1967).
+
+    The bells of the field are wider than the readings' noise, so the curvature alone says too
+    little; how far the readings really lie from the bells' middles is in their slopes. Directions
+    without curvature have no information.
+    """
+    values, directions = np.linalg.eigh(curvature)
+    told = directions[:, values > FLAT * values[-1]]
+    softness = np.linalg.inv(told.T @ curvature @ told)
+    covariance = softness @ (told.T @ scatter @ told) @ softness + told.T @ SHARPEST @ told
+    return np.asarray(told @ np.linalg.inv(covariance) @ told.T)
+
+
+def _uncertainty(
+    covariance: NDArray[np.float64], points: NDArray[np.float64], resolution: float
+) -> float:
+    """Standard deviation [cells] of where a typical beam ends."""
+    arm = float(np.mean(np.hypot(points[:, 0], points[:, 1])))
+    along = 0.5 * (covariance[0, 0] + covariance[1, 1]) / resolution**2
+    return math.sqrt(along + arm**2 * covariance[2, 2])
+
+
+def _searched(
+    field: HitField,
+    cloud: ScanCloud,
+    prior: NDArray[np.float64],
+    covariance: NDArray[np.float64],
+    config: MatcherConfig,
+) -> NDArray[np.float64]:
+    """The best pose of the search, in cells; the prior itself when nothing matches."""
+    sigma_shift = math.sqrt(max(covariance[0, 0], covariance[1, 1]))
+    sigma_turn = math.sqrt(covariance[2, 2])
+    shift = min(config.search_sigmas * sigma_shift, config.widest_shift)
+    turn = min(config.search_sigmas * sigma_turn, config.widest_turn)
+    return search_window(field, cloud, prior, shift, turn).pose

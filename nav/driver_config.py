@@ -1,0 +1,28 @@
+"""The driver's settings: those of its parts, and when it stops trying."""
+
+from dataclasses import dataclass
+
+from nav.headway import HeadwayConfig
+from nav.path_follower import FollowerConfig
+from nav.recovery import RecoveryConfig
+from nav.safety import SafetyConfig
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DriverConfig:
+    """The parts that drive, and their patience."""
+
+    follower: FollowerConfig = FollowerConfig()
+    safety: SafetyConfig = SafetyConfig()
+    headway: HeadwayConfig = HeadwayConfig()
+    recovery: RecoveryConfig = RecoveryConfig()
+    first_look: float = 1.0
+    """Time to stand and look before the first decision [s]: a mapper may want several scans."""
+    obstacle_reach: float = 1.2
+    """Returns up to this far are held against the path [m]."""
+    path_clearance: float = 0.10
+    """A return this close to the path ahead blocks it [m]."""
+    recoveries_in_a_row: int = 8
+    """Recoveries without getting on in between after which the robot is stuck."""
+    got_on: float = 1.0
+    """Distance from the last recovery's place at which the robot has got on [m]."""
