@@ -12,7 +12,8 @@ from mapping.mapper import Mapper
 from mapping.occ_grid_mapp import OccGridMapp, OccGridMappConfig
 from mapping.odometry_mapper import checked_pose
 from mapping.ogm import Ogm, OgmConfig, growing_grid
-from mapping.slam.gmapping import Gmapping, GmappingConfig
+from mapping.slam.gmapping import Gmapping
+from mapping.slam.gmapping_config import GmappingConfig
 from mapping.slam.graph_slam import GraphConfig, GraphSlam
 from mapping.slam.scan_match import ScanMatch, ScanMatchConfig
 

@@ -7,7 +7,8 @@ while it drives.
 An odometry that takes its heading from the IMU, as the firmware's does, repeats the gyroscope, bias
 and all, and corrects nothing (see ``FusionConfig.heading_from``). Without an IMU the track is the
 odometry's, with the covariance of its motion model. A scale error of the gyroscope is not
-estimated: heading turns by that share too far.
+estimated: headings turn by that share too far. An odometry without any error gains nothing; it is
+made as good as the gyroscope.
 """
 
 import math

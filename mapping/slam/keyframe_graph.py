@@ -43,6 +43,8 @@ class KeyframeGraph:
 
     def __init__(self) -> None:
         self.clouds: list[ScanCloud] = []
+        self.sights: list[float] = []
+        """How far each keyframe typically saw [m]."""
         self.edges: list[Edge] = []
         self._poses = np.empty((FIRST_ROOM, 3))
         self._looks = np.empty((FIRST_ROOM, 2))
@@ -74,6 +76,7 @@ class KeyframeGraph:
         self._poses, self._looks = _grown(self._poses, number), _grown(self._looks, number)
         self._poses[number] = pose
         self._looks[number] = look_of(cloud)
+        self.sights.append(sight_of(cloud))
         self.clouds.append(cloud)
         return number
 
@@ -141,6 +144,11 @@ class KeyframeGraph:
 def look_of(cloud: ScanCloud) -> NDArray[np.float64]:
     """The middle of what a scan saw ``(2,)`` in its own frame: near 0 if it looked all around."""
     return cloud.points.mean(axis=0) if len(cloud) else np.zeros(2)
+
+
+def sight_of(cloud: ScanCloud) -> float:
+    """How far a scan typically saw [m]: half of its points lie farther from the robot."""
+    return float(np.median(np.hypot(*cloud.points.T))) if len(cloud) else 0.0
 
 
 def edge_between(

@@ -7,6 +7,7 @@ another keyframe, and both must agree.
 """
 
 import math
+from collections import deque
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,8 +21,15 @@ from mapping.slam.local_map import LocalMap, LocalMapConfig
 from mapping.slam.scan_cloud import ScanCloud
 from mapping.slam.scan_matcher import MatcherConfig, match_scan
 
-OVERLAP = 0.6
-"""Views whose middles are within this share of the reach see enough of the same."""
+OVERLAP = 2.0
+"""Views whose middles are within this share of how far a scan typically sees show enough of the
+same."""
+
+DETOUR = 3.0
+"""A place is come back to when the way to it along the edges is this many times its distance."""
+
+PASS = 10
+"""Keyframes so near in time belong to one pass of the robot."""
 
 SEARCHED_SIGMAS = np.array([0.1, 0.1, 0.05])
 """How sure [m, m, rad] the best pose of a search over whole cells is."""
@@ -46,6 +54,12 @@ class LoopConfig:
     """The same for the yaw [rad]."""
     least_score: float = 0.6
     """Share of the cloud that must lie on walls of the other map."""
+    far_score: float = 0.7
+    """The same for a place that is not believed at once."""
+    apart: float = 1.5
+    """Two places found are believed if so much way lies between them [m]: else they are one view."""
+    together: int = 2
+    """Or if so many agree with the newest one, however near."""
     fellows: int = 8
     """Keyframes laid together into the cloud."""
     points: int = 500
@@ -71,6 +85,7 @@ class _Found:
 
     keyframe: int
     far: int
+    score: float
     pose: Pose
     covariance: NDArray[np.float64]
 
@@ -90,6 +105,7 @@ class LoopCloser:
         self._matcher = matcher
         self.config = config
         self._waiting: list[_Found] = []
+        self._tried: deque[int] = deque(maxlen=3)
 
     def edges(self, keyframe: int, local: list[int]) -> list[Edge]:
         """The edges to add, now that there is a new keyframe; mostly none.
@@ -107,36 +123,53 @@ class LoopCloser:
             return []
         if shift <= self.config.sure_shift and turn <= self.config.sure_turn:
             return [self._edge(found)]
+        if found.score < self.config.far_score:
+            return []
         fellows = [other for other in self._waiting if self._agree(other, found)]
         self._waiting = [
             other
             for other in self._waiting
             if other not in fellows and found.keyframe - other.keyframe <= self.config.memory
         ]
-        if not fellows:
-            self._waiting.append(found)
+        ways, _ = self._graph.ways(keyframe)
+        apart = any(ways[other.keyframe] >= self.config.apart for other in fellows)
+        if not (apart or len(fellows) >= self.config.together):
+            self._waiting += [*fellows, found]
             return []
         return [self._edge(each) for each in (*fellows, found)]
 
     def _candidate(self, keyframe: int) -> tuple[int, float, float] | None:
-        """The likeliest far keyframe, and how far around to search [m, rad]."""
-        graph, config, reach = self._graph, self.config, self._map.config.reach
+        """The likeliest far keyframe, and how far around to search [m, rad].
+
+        Of the passes that came near, each a run of keyframes, the nearest is tried that was not
+        tried just before.
+        """
+        graph, config = self._graph, self.config
         ways, before = graph.ways(keyframe)
+        near = OVERLAP * graph.sights[keyframe]
         distances = np.hypot(*(graph.views - graph.views[keyframe]).T)
-        far = np.flatnonzero(ways > self._map.config.way)
-        if len(far) == 0:
-            return None
-        nearest = int(far[np.argmin(distances[far])])
+        far = (ways > self._map.config.way) & (ways > DETOUR * distances)
+        far &= distances < config.widest_shift + near
+        order = np.flatnonzero(far)
+        order = order[np.argsort(distances[order], kind="stable")]
+        rest = order
+        while len(rest):
+            nearest = int(rest[0])
+            if all(abs(nearest - other) > PASS for other in self._tried):
+                break
+            rest = rest[np.abs(rest - nearest) > PASS]
+        else:
+            self._tried.clear()
+            if len(order) == 0:
+                return None
+            nearest = int(order[0])
+        self._tried.append(nearest)
         place, yaw = graph.uncertainty(keyframe, nearest, before)
         shift = min(config.sigmas * math.sqrt(place), config.widest_shift)
-        if distances[nearest] > shift + OVERLAP * reach:
+        if distances[nearest] > shift + near:
             return None
         least = 2.0 * self._map.config.resolution
-        return (
-            nearest,
-            shift + least,
-            min(config.sigmas * math.sqrt(yaw), config.widest_turn) + 0.02,
-        )
+        return nearest, shift + least, min(config.sigmas * math.sqrt(yaw), config.widest_turn) + 0.02
 
     def _find(
         self, keyframe: int, far: int, shift: float, turn: float, apart_from: set[int]
@@ -163,6 +196,7 @@ class LoopCloser:
         return _Found(
             keyframe=keyframe,
             far=nearest,
+            score=match.score,
             pose=between(graph.poses[nearest], match.pose),
             covariance=match.covariance + np.diag(LOOP_SIGMAS**2),
         )
@@ -194,8 +228,6 @@ class LoopCloser:
 
     def _agree(self, earlier: _Found, later: _Found) -> bool:
         """Whether two places found move the robot's past by the same."""
-        if earlier.keyframe == later.keyframe:
-            return False
         poses = self._graph.poses
         moved = compose(self._where(earlier), inverse(poses[earlier.keyframe]))
         expected = compose(moved, poses[later.keyframe])

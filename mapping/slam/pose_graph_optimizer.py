@@ -9,8 +9,10 @@ from mapping.slam.keyframe_graph import Edge
 START_SIGMA = 1e-4
 """The first keyframe stays where it is, to this [m, rad]."""
 
-CAUCHY_WIDTH = 1.0
-"""Loop edges beyond this many standard deviations lose weight (Cauchy's loss)."""
+HUBER_WIDTH = 2.0
+"""A loop edge pulls no harder than one this many standard deviations off (Huber's loss): a wrong one
+cannot bend the map much. Losses that let go of far edges, such as Cauchy's, never close a loop that
+is metres open: it is as far off as a wrong one."""
 
 RELINEARIZE_ABOVE = 0.01
 """iSAM2 linearises a pose anew when it has moved by more than this [m, rad]."""
@@ -55,6 +57,6 @@ def factor_of(edge: Edge) -> gtsam.BetweenFactorPose2:
     """The factor that an edge makes."""
     noise: gtsam.noiseModel.Base = gtsam.noiseModel.Gaussian.Covariance(edge.covariance)
     if edge.is_loop:
-        cauchy = gtsam.noiseModel.mEstimator.Cauchy.Create(CAUCHY_WIDTH)
-        noise = gtsam.noiseModel.Robust.Create(cauchy, noise)
+        huber = gtsam.noiseModel.mEstimator.Huber.Create(HUBER_WIDTH)
+        noise = gtsam.noiseModel.Robust.Create(huber, noise)
     return gtsam.BetweenFactorPose2(edge.a, edge.b, gtsam.Pose2(*edge.pose), noise)

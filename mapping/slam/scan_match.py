@@ -37,6 +37,9 @@ FARTHEST_POINT = 15.0
 MATCH_FLOOR = np.diag(np.square([0.004, 0.004, 0.0015]))
 """No pose is surer than this [m^2, m^2, rad^2]: the walls in the map err together."""
 
+EDGE_FLOOR = np.diag(np.square([0.01, 0.01, 0.004]))
+"""Nor is a keyframe's place among the others, whose errors it takes over [m^2, m^2, rad^2]."""
+
 STILL_SHIFT, STILL_TURN = 5e-4, 5e-4
 """A robot that moved less than this [m, rad] since its last scan is where it was."""
 
@@ -253,7 +256,7 @@ class ScanMatch:
         ties = self._ties(_view(self._pose, cloud)) if len(graph) else []
         number = graph.add(self._pose, cloud)
         for other in ties:
-            covariance = self._covariance * len(ties)
+            covariance = (self._covariance + EDGE_FLOOR) * len(ties)
             graph.connect(edge_between(other, number, graph.poses[other], self._pose, covariance))
         return number
 
