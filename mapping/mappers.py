@@ -39,7 +39,8 @@ def make_mapper(
         name: One of MAPPERS.
         start_pose_map: Where the robot stands in the map frame when its odometry starts:
             x [m], y [m], yaw [rad].
-        resolution: Edge of a cell [m] of the mapper's own grid; None keeps its default, 1 cm.
+        resolution: Edge of a cell [m] of the mapper's own grid; None keeps its default: 5 cm for
+            gmapping, 1 cm for the others.
         grid: The whole grid instead; ``resolution`` must then be None.
         settings: Fields of the mapper's config that differ from their defaults.
 

@@ -99,8 +99,8 @@ class GmappingConfig:
     sample_proposal: bool = False
     """Whether particles are drawn from a Gaussian around their match, as in the paper (III-B). The
     classic program puts them on the match itself and lets the next motion spread them; on the Intel
-    log the Gaussian makes the relations worse, 0.033 m instead of 0.025 m with ``linearUpdate=0.5``,
-    and each update takes a quarter longer."""
+    log the Gaussian leaves 0.033 m where the match leaves 0.025 m, both with ``linearUpdate=0.5``,
+    and an update takes a third longer."""
     llsamplerange: float = 0.01
     """How far around the match the likelihood is sampled for that Gaussian [m]."""
     llsamplestep: float = 0.01

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from mapping.geometry import Pose, wrap_to_pi
 
-SMALLEST = np.diag(np.square([0.002, 0.002, 0.001]))
+SMALLEST = np.diag(np.square([5e-4, 5e-4, 2e-4]))
 """No motion is surer than this [m^2, m^2, rad^2]: scans come at odd times between messages."""
 
 LARGEST_SURPRISE = 9.0
@@ -80,17 +80,27 @@ class OdometryCalibration:
             ]
         )
 
-    def widened(self, motion: Pose, covariance: NDArray[np.float64]) -> NDArray[np.float64]:
+    def widened(
+        self, motion: Pose, covariance: NDArray[np.float64], *, has_gyro: bool
+    ) -> NDArray[np.float64]:
         """The covariance of a motion ``(3, 3)``, as much wider as the surprises so far ask for.
 
         Errors ahead, aside and in turning are taken to be independent: that one follows from
         another holds for a robot whose wheels never slip sideways.
+
+        Args:
+            motion: The odometry's motion ``(3,)``.
+            covariance: What the motion model says ``(3, 3)``.
+            has_gyro: Whether the turn comes from a gyroscope, whose model holds for any robot.
         """
         ahead, aside, turn = np.diag(covariance)
         noise = np.array([self.ahead_noise, self.aside_noise, self.turn_noise])
         way, angle = float(np.hypot(motion[0], motion[1])), abs(float(motion[2]))
         place = way + self.config.turn_arm * angle
         least = self.config.least_share * np.array([place, place, angle + way])
+        if has_gyro:
+            least[2] = 0.0
+            noise[2] = 1.0
         return np.diag(noise * ((ahead, max(ahead, aside), turn) + least**2)) + SMALLEST
 
     def learn(self, motion: Pose, matched: Pose, covariance: NDArray[np.float64]) -> None:

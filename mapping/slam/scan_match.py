@@ -34,11 +34,11 @@ from mapping.slam.sweep import Sweep, make_sweep
 FARTHEST_POINT = 15.0
 """Points farther away are not matched [m]: a degree of yaw moves them by five cells."""
 
-MATCH_FLOOR = np.diag(np.square([0.004, 0.004, 0.0015]))
-"""No pose is surer than this [m^2, m^2, rad^2]: the walls in the map err together."""
+START_COVARIANCE = np.diag(np.square([0.004, 0.004, 0.0015]))
+"""How sure the first pose is: as sure as the first match will be [m^2, m^2, rad^2]."""
 
 EDGE_FLOOR = np.diag(np.square([0.01, 0.01, 0.004]))
-"""Nor is a keyframe's place among the others, whose errors it takes over [m^2, m^2, rad^2]."""
+"""No keyframe is surer of its place among the others, whose errors it takes over [m^2, m^2, rad^2]."""
 
 STILL_SHIFT, STILL_TURN = 5e-4, 5e-4
 """A robot that moved less than this [m, rad] since its last scan is where it was."""
@@ -127,9 +127,10 @@ class ScanMatch:
         self._track = FusedTrack(self.config.fusion)
         self._calibration = OdometryCalibration(self.config.calibration)
         self._local = LocalMap(self.graph, self._local_config())
+        self._has_gyro = False
         self._newest_scan = -np.inf
         self._pose = start
-        self._covariance = MATCH_FLOOR
+        self._covariance = START_COVARIANCE
         self._scan_odom: Pose | None = None
         self._nearest = 0
         self._history = PoseHistory()
@@ -154,6 +155,7 @@ class ScanMatch:
     ) -> None:
         """Take the messages of one control period."""
         self._track.add(odometry, imu)
+        self._has_gyro = self._has_gyro or len(imu) > 0
         if scan is not None and scan.stamp != self._newest_scan:
             if scan.stamp > self._newest_scan and self._take(scan):
                 self.updates += 1
@@ -210,7 +212,7 @@ class ScanMatch:
         spread, self._scan_odom = self._track.motion_covariance(), pose_odom
         self._track.mark()
         predicted = compose(self._pose, self._calibration.corrected(motion))
-        spread = self._calibration.widened(motion, spread)
+        spread = self._calibration.widened(motion, spread, has_gyro=self._has_gyro)
         covariance = _carried(self._covariance, self._pose, predicted, spread)
         self._local.follow(self._nearest, _view(predicted, cloud))
         match = match_scan(self._local.field, cloud, predicted, covariance, self.config.matcher)
@@ -219,7 +221,7 @@ class ScanMatch:
                 motion, between(self._pose, match.seen), covariance + match.seen_covariance
             )
         self._pose = match.pose
-        self._covariance = match.covariance + MATCH_FLOOR
+        self._covariance = match.covariance
         return match.score
 
     def _note(self, stamp: float, cloud: ScanCloud, sweep: Sweep, score: float) -> None:

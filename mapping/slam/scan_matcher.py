@@ -29,6 +29,10 @@ SHARPEST = np.diag(np.square([0.002, 0.002, 0.001]))
 FLAT = 1e-9
 """A curvature smaller than this share of the largest is one that was taken out."""
 
+SURPRISING = 11.3
+"""A scan this far from the prediction, in squared standard deviations, was predicted wrongly: 1 % of
+three normal numbers lie farther out (chi-square)."""
+
 NOTHING_TOLD = np.eye(3)
 """Information [1/m^2, 1/m^2, 1/rad^2] of a scan that tells nothing."""
 
@@ -130,9 +134,11 @@ def match_scan(
     seen = field.to_metres(pose)
     per_metre = np.outer(1.0 / scale, 1.0 / scale)
     told = _information(curvature * per_metre, scatter * per_metre * config.togetherness)
-    fused = np.linalg.inv(told + np.linalg.inv(covariance))
     offset = seen - predicted
     offset[2] = wrap_to_pi(offset[2])
+    seen_covariance = np.linalg.inv(told + NOTHING_TOLD)
+    surprise = offset @ np.linalg.solve(covariance + seen_covariance, offset) / SURPRISING
+    fused = np.linalg.inv(told + np.linalg.inv(covariance * max(surprise, 1.0)))
     found = predicted + fused @ told @ offset
     found[2] = wrap_to_pi(found[2])
     return Match(
@@ -141,7 +147,7 @@ def match_scan(
         score=score,
         refused=False,
         seen=predicted + offset,
-        seen_covariance=np.linalg.inv(told + NOTHING_TOLD),
+        seen_covariance=seen_covariance,
     )
 
 
