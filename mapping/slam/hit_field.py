@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mapping.slam.correlative_kernels import block_maxima
-from mapping.slam.hit_field_kernels import shares_of, smear
+from mapping.slam.hit_field_kernels import SIDES, shares_of, smear
 
 BELL_SUM = float(np.sqrt(2.0 * np.pi))
 """Bells one cell apart along a wall add up to this height, in the height of one."""
@@ -31,7 +31,7 @@ class HitField:
         self.outlier = outlier
         self._half_cells = round(half_width / resolution)
         side = 2 * self._half_cells
-        self.density: NDArray[np.float32] = np.zeros((side, side), dtype=np.float32)
+        self.density: NDArray[np.float32] = np.zeros((side, side, SIDES), dtype=np.float32)
         self.corner = np.zeros(2)
         self._maxima: NDArray[np.uint8] | None = None
 
@@ -52,7 +52,8 @@ class HitField:
 
         Args:
             pose: Where it was taken ``(3,)``, in the frame of the field.
-            surface: The walls ``(n, 3)``: x, y [m] and weight, a resolution apart.
+            surface: The walls ``(n, 5)``: x, y [m], weight and the direction that they face, points
+                a resolution apart.
         """
         self._maxima = None
         smear(self.density, self.to_cells(pose), surface, self.resolution, 1.0 / BELL_SUM)
@@ -63,7 +64,7 @@ class HitField:
         A share, in 255ths, is that of readings at a cell that belong to known walls.
         """
         if self._maxima is None or len(self._maxima) < levels:
-            shares = np.empty(self.density.shape, dtype=np.uint8)
+            shares = np.empty(self.density.shape[:2], dtype=np.uint8)
             shares_of(self.density, shares)
             self._maxima = block_maxima(shares, levels)
         return self._maxima

@@ -1,4 +1,10 @@
-"""Kernels of the hit field: smear readings into it, read its height, slope and curvature."""
+"""Kernels of the hit field: smear walls into it, read its height, slope and curvature.
+
+The field has a layer for each of four sides that a wall can be seen from, +x, +y, -x and -y of the
+field: the two faces of a thin wall, or of a corner, lie closer together than bells are wide, and a
+reading of one must not be drawn to the other. A wall seen from between two sides is shared out by
+the squares of the cosines, which add up to one.
+"""
 
 import math
 
@@ -15,6 +21,12 @@ TAPS = 4
 KNOWN = 0.2
 """A reading at this density, a fifth of what one scan makes of a wall, lies half on a known wall."""
 
+SIDES = 4
+"""Layers of a field."""
+
+UNKNOWN_SIDE = 0.5
+"""What a point that faces an unknown direction gives to every side."""
+
 FAINT = 1e-3
 """Below this density there is nothing to be drawn to."""
 
@@ -30,28 +42,55 @@ def smear(
     """Add to ``density`` a bell of one cell's standard deviation for each point of a surface.
 
     Args:
-        density: The field ``(rows, columns)``; what would fall outside is left out.
+        density: The field ``(rows, columns, SIDES)``; what would fall outside is left out.
         pose: Where the surface was seen from ``(3,)``: x, y in cells from the corner, yaw [rad].
-        surface: Its points ``(n, 3)``: x, y [m] and weight.
+        surface: Its points ``(n, 5)``: x, y [m], weight, and the direction that it faces, zeros
+            where that is not known.
         resolution: Edge of a cell [m].
         height: Height of the bell of a point of weight 1.
     """
-    rows, columns = density.shape
-    cos, sin = math.cos(pose[2]) / resolution, math.sin(pose[2]) / resolution
-    across = np.empty(2 * REACH + 2)
+    rows, columns, _ = density.shape
+    cos, sin = math.cos(pose[2]), math.sin(pose[2])
+    along = np.empty(2 * REACH + 2, dtype=np.float32)
+    sides = np.empty(SIDES, dtype=np.float32)
     for i in range(len(surface)):
-        x = pose[0] + cos * surface[i, 0] - sin * surface[i, 1] - 0.5
-        y = pose[1] + sin * surface[i, 0] + cos * surface[i, 1] - 0.5
+        x = pose[0] + (cos * surface[i, 0] - sin * surface[i, 1]) / resolution - 0.5
+        y = pose[1] + (sin * surface[i, 0] + cos * surface[i, 1]) / resolution - 0.5
         left, bottom = math.floor(x) - REACH, math.floor(y) - REACH
         right, top = left + 2 * REACH + 2, bottom + 2 * REACH + 2
         if right <= 0 or top <= 0 or left >= columns or bottom >= rows:
             continue
+        side_shares(
+            cos * surface[i, 3] - sin * surface[i, 4],
+            sin * surface[i, 3] + cos * surface[i, 4],
+            UNKNOWN_SIDE,
+            sides,
+        )
         for k in range(2 * REACH + 2):
-            across[k] = math.exp(-0.5 * (left + k - x) ** 2)
+            along[k] = math.exp(-0.5 * (left + k - x) ** 2)
         for row in range(max(bottom, 0), min(top, rows)):
-            high = height * surface[i, 2] * math.exp(-0.5 * (row - y) ** 2)
+            high = np.float32(height * surface[i, 2] * math.exp(-0.5 * (row - y) ** 2))
             for column in range(max(left, 0), min(right, columns)):
-                density[row, column] += np.float32(high * across[column - left])
+                bell = high * along[column - left]
+                for side in range(SIDES):
+                    density[row, column, side] += bell * sides[side]
+
+
+@njit(cache=True)
+def side_shares(nx: float, ny: float, unknown: float, sides: NDArray[np.float32]) -> None:
+    """Share a wall that faces a direction out among the sides.
+
+    Args:
+        nx: The direction along x; both 0 when it is not known.
+        ny: And along y.
+        unknown: What every side gets then.
+        sides: Written ``(SIDES,)``.
+    """
+    if nx == 0.0 and ny == 0.0:
+        sides[:] = unknown
+        return
+    sides[0], sides[1] = max(nx, 0.0) ** 2, max(ny, 0.0) ** 2
+    sides[2], sides[3] = max(-nx, 0.0) ** 2, max(-ny, 0.0) ** 2
 
 
 @njit(cache=True)
@@ -99,11 +138,11 @@ def newton_terms(
     plane is made positive semi-definite, so that the sum is a matrix that Newton's step can use.
 
     Args:
-        density: The field ``(rows, columns)``.
+        density: The field ``(rows, columns, SIDES)``.
         pose: Pose of the scan in cells: x, y from the field's corner, yaw [rad] ``(3,)``.
         points: Readings in the scan's frame, in cells ``(n, 2)``.
-        normals: Directions across the walls that they lie on, in the scan's frame ``(n, 2)``; a
-            reading tells nothing along its wall. Zeros for a reading that tells about both.
+        normals: Directions that the walls they lie on face, in the scan's frame ``(n, 2)``; a
+            reading tells nothing along its wall. Zeros for a reading that may lie on any wall.
         weights: How much each reading tells ``(n,)``.
         outlier: Density that stands for readings of unknown things.
         gradient: Written: slope over x, y [1/cell] and yaw ``(3,)``.
@@ -113,7 +152,8 @@ def newton_terms(
     Returns:
         The log likelihood, and the mean share of readings that lie on known walls, 0..1.
     """
-    rows, columns = density.shape
+    rows, columns, _ = density.shape
+    sides = np.empty(SIDES, dtype=np.float32)
     gradient[:] = 0.0
     hessian[:] = 0.0
     scatter[:] = 0.0
@@ -134,11 +174,16 @@ def newton_terms(
             continue
         spline_taps(x - column, wx, sx, cx)
         spline_taps(y - row, wy, sy, cy)
+        nx = cos * normals[i, 0] - sin * normals[i, 1]
+        ny = sin * normals[i, 0] + cos * normals[i, 1]
+        side_shares(nx, ny, 1.0, sides)
         height = dx = dy = dxx = dxy = dyy = 0.0
         for j in range(TAPS):
             line = line_x = line_xx = 0.0
             for k in range(TAPS):
-                cell = density[row - 1 + j, column - 1 + k]
+                cell = np.float32(0.0)
+                for side in range(SIDES):
+                    cell += sides[side] * density[row - 1 + j, column - 1 + k, side]
                 line += wx[k] * cell
                 line_x += sx[k] * cell
                 line_xx += cx[k] * cell
@@ -159,8 +204,6 @@ def newton_terms(
         a = gx * gx - dxx / level
         b = gx * gy - dxy / level
         c = gy * gy - dyy / level
-        nx = cos * normals[i, 0] - sin * normals[i, 1]
-        ny = sin * normals[i, 0] + cos * normals[i, 1]
         if nx != 0.0 or ny != 0.0:
             across = nx * gx + ny * gy
             bend = max(nx * nx * a + 2.0 * nx * ny * b + ny * ny * c, 0.0)
@@ -202,9 +245,11 @@ def newton_terms(
 @njit(cache=True)
 def shares_of(density: NDArray[np.float32], shares: NDArray[np.uint8]) -> None:
     """Write how likely a reading at each cell belongs to a known wall, in 255ths."""
-    rows, columns = density.shape
+    rows, columns, _ = density.shape
     known = np.float32(KNOWN)
     for row in range(rows):
         for column in range(columns):
-            height = max(density[row, column], np.float32(0.0))
+            height = np.float32(0.0)
+            for side in range(SIDES):
+                height += density[row, column, side]
             shares[row, column] = np.uint8(np.float32(255.0) * height / (height + known))

@@ -223,7 +223,7 @@ class LoopCloser:
             points=points[::step].copy(),
             normals=normals[::step].copy(),
             weights=weights[::step].copy(),
-            surface=np.zeros((0, 3), np.float32),
+            surface=np.zeros((0, 5), np.float32),
         )
 
     def _agree(self, earlier: _Found, later: _Found) -> bool:

@@ -13,6 +13,10 @@ from mapping.slam.surface_kernels import normals_of, surface_of
 
 IDENTITY = np.zeros(3)
 
+LOOSE_WORTH = 0.2
+"""What a point counts that lies on no wall: on a corner or a leg, of which every place shows another
+side, and to which its neighbours on unseen sides are drawn."""
+
 ALL_AROUND = 1.5 * np.pi
 """A lidar with a wider field of view than this [rad] looks to all sides."""
 
@@ -24,11 +28,12 @@ class ScanCloud:
     points: NDArray[np.float64]
     """Where beams ended at something ``(n, 2)`` [m]."""
     normals: NDArray[np.float64]
-    """Directions across the walls that they lie on ``(n, 2)``; zeros where there is no wall."""
+    """Directions that the walls they lie on face ``(n, 2)``; zeros where there is no wall."""
     weights: NDArray[np.float64]
     """How much each point tells ``(n,)``: 1 for a near one, less where readings are noisy."""
     surface: NDArray[np.float32]
-    """The walls that the points lie on ``(m, 3)``: x, y [m] and weight, evenly spaced along them."""
+    """The walls that the points lie on ``(m, 5)``, evenly spaced along them: x, y [m], weight, and
+    the direction that they face."""
     looks_around: bool = True
     """Whether the lidar sees to all sides, so that turning shows it nothing new."""
 
@@ -64,10 +69,14 @@ def make_cloud(
     _, _, ends = aim(IDENTITY, poses_base[kept], lidar_pose_base, scan.angles[indices], lengths)
     weights = np.minimum(1.0, (resolution / range_sigma(lengths, range_noise)) ** 2)
     increment = abs(scan.angle_increment)
+    normals = normals_of(ends, lengths, indices, increment)
+    loose = weights * np.where(np.any(normals != 0.0, axis=1), 1.0, LOOSE_WORTH)
     return ScanCloud(
         points=ends,
-        normals=normals_of(ends, lengths, indices, increment),
-        weights=weights,
-        surface=surface_of(ends, lengths, indices, weights, increment, resolution),
+        normals=normals,
+        weights=loose,
+        surface=surface_of(
+            ends, lengths, indices, weights, normals, increment, resolution
+        ),
         looks_around=increment * len(scan.ranges) > ALL_AROUND,
     )

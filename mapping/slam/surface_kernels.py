@@ -17,6 +17,9 @@ things: a wall is believed up to about 80 degrees from the beam's normal."""
 WIDEST_GAP = 0.4
 """Nor are they joined farther apart than this [m]."""
 
+ASLANT = 0.4
+"""A piece between neighbours lies along their wall if no more than this share of it goes across."""
+
 NEIGHBOURS = 2
 """Beams are neighbours up to this many increments apart: one between them may have failed."""
 
@@ -38,10 +41,13 @@ def surface_of(
     lengths: NDArray[np.float64],
     indices: NDArray[np.int64],
     weights: NDArray[np.float64],
+    normals: NDArray[np.float64],
     increment: float,
     spacing: float,
 ) -> NDArray[np.float32]:
-    """Points ``(m, 3)``, x, y [m] and weight, spread along the walls that readings lie on.
+    """Points spread along the walls that readings lie on ``(m, 5)``.
+
+    Their columns are x, y [m], weight, and the direction that the wall faces, zeros if unknown.
 
     Each reading stands for half of the way to each neighbour on the same wall, at least for the
     width of its beam. Weights are such that each point stands for ``spacing`` of wall.
@@ -51,11 +57,12 @@ def surface_of(
         lengths: How far they were from the lidar ``(n,)`` [m].
         indices: Their beams ``(n,)``, ascending.
         weights: How much each tells ``(n,)``.
+        normals: Directions that their walls face ``(n, 2)``.
         increment: Angle between beams [rad].
         spacing: Distance between points along a wall [m].
     """
     count = len(lengths)
-    surface = np.empty((count * (2 + int(WIDEST_GAP / spacing)), 3), dtype=np.float32)
+    surface = np.empty((count * (2 + int(WIDEST_GAP / spacing)), 5), dtype=np.float32)
     made = 0
     for i in range(count):
         width = min(lengths[i] * increment, spacing)
@@ -69,6 +76,10 @@ def surface_of(
             apart = min(lengths[i], lengths[j]) * increment * abs(indices[j] - indices[i])
             if gap > min(STEEPEST * apart + spacing, WIDEST_GAP):
                 continue
+            across = abs(normals[i, 0] * dx + normals[i, 1] * dy)
+            is_wall = normals[i, 0] != 0.0 or normals[i, 1] != 0.0
+            if gap > spacing and not (is_wall and across <= ASLANT * gap):
+                continue
             joined += 0.5 * gap
             steps = int(math.ceil(0.5 * gap / spacing))
             for k in range(steps):
@@ -76,10 +87,12 @@ def surface_of(
                 surface[made, 0] = points[i, 0] + share * dx
                 surface[made, 1] = points[i, 1] + share * dy
                 surface[made, 2] = weights[i] * (0.5 * gap / steps) / spacing
+                surface[made, 3], surface[made, 4] = normals[i, 0], normals[i, 1]
                 made += 1
         if joined < width:
             surface[made, 0], surface[made, 1] = points[i, 0], points[i, 1]
             surface[made, 2] = weights[i] * (width - joined) / spacing
+            surface[made, 3], surface[made, 4] = normals[i, 0], normals[i, 1]
             made += 1
     return surface[:made].copy()
 
@@ -91,9 +104,9 @@ def normals_of(
     indices: NDArray[np.int64],
     increment: float,
 ) -> NDArray[np.float64]:
-    """Directions across the walls that readings lie on ``(n, 2)``; zeros where there is no wall.
+    """Directions that the walls of readings face ``(n, 2)``; zeros where there is no wall.
 
-    The axis of least spread of a reading and its neighbours on the same wall, if the spread along
+    They face the robot, at the origin. A direction is the axis of least spread of a reading and its neighbours on the same wall, if the spread along
     the wall is much larger.
 
     Args:
@@ -124,5 +137,7 @@ def normals_of(
         if middle - spread > FLATNESS * (middle + spread):
             continue
         angle = 0.5 * math.atan2(2.0 * b, a - c) + 0.5 * math.pi
-        normals[i, 0], normals[i, 1] = math.cos(angle), math.sin(angle)
+        nx, ny = math.cos(angle), math.sin(angle)
+        sign = -1.0 if nx * points[i, 0] + ny * points[i, 1] > 0.0 else 1.0
+        normals[i, 0], normals[i, 1] = sign * nx, sign * ny
     return normals
