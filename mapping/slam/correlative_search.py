@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mapping.geometry import Pose
+from mapping.geometry import Pose, transform_points
 from mapping.slam.correlative_kernels import search
-from mapping.slam.hit_field import HitField
+from mapping.slam.hit_field import HitField, Window
 from mapping.slam.scan_cloud import ScanCloud
 
 FAR_SHARE = 90.0
@@ -53,12 +53,43 @@ def search_window(
     reach = max(math.ceil(shift / field.resolution), 1)
     worth = cloud.weights * np.minimum(np.hypot(points[:, 0], points[:, 1]), far)
     pull = np.array([SHIFT_PULL / reach**2, TURN_PULL / turn**2 if turn > 0.0 else 0.0])
+    window = _window(field, points, center, turn, reach)
+    corner = np.array([window[2], window[0], 0.0])
     score, index, shift_x, shift_y = search(
-        field.maxima(_levels(reach)), points, worth / worth.sum(), center, turns, reach, pull, floor
+        field.maxima(window, _levels(reach)),
+        points,
+        worth / worth.sum(),
+        center - corner,
+        turns,
+        reach,
+        pull,
+        floor,
     )
     if index < 0:
         return Found(pose=center, score=0.0)
     return Found(pose=center + np.array([shift_x, shift_y, turns[index]]), score=score)
+
+
+def _window(
+    field: HitField,
+    points: NDArray[np.float64],
+    center: NDArray[np.float64],
+    turn: float,
+    reach: int,
+) -> Window:
+    """The part of the field that the points can come to lie in; never empty."""
+    spread = np.hypot(points[:, 0], points[:, 1]) * min(turn, 1.0)
+    placed = transform_points(center, points)
+    margin = spread[:, None] + reach + 1.0
+    left, bottom = np.floor((placed - margin).min(axis=0)).astype(int)
+    right, top = np.ceil((placed + margin).max(axis=0)).astype(int) + 1
+    rows, columns, _ = field.density.shape
+    first_row, first_column = min(max(bottom, 0), rows - 1), min(max(left, 0), columns - 1)
+    last_row, last_column = (
+        max(min(top, rows), first_row + 1),
+        max(min(right, columns), first_column + 1),
+    )
+    return first_row, last_row, first_column, last_column
 
 
 def _levels(reach: int) -> int:

@@ -129,8 +129,8 @@ class FusedTrack:
         else:
             self._still_time = 0.0
         if (
-            math.hypot(motion[0], motion[1]) > config.max_speed * duration
-            or abs(motion[2]) > config.max_turn_rate * duration
+            math.hypot(motion[0], motion[1]) > config.max_speed * duration + config.late_way
+            or abs(motion[2]) > config.max_turn_rate * duration + config.late_turn
         ):
             self.jumps += 1
             speed, rate = self._rows[-1][4:6]

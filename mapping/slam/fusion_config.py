@@ -61,6 +61,11 @@ class FusionConfig:
     are let indoors, so that logs with seconds between messages pass."""
     max_turn_rate: float = 10.0
     """The same for turns [rad/s], and for readings of the gyroscope."""
+    late_way: float = 1.5
+    """What a motion may exceed these by [m]: logs hold messages stamped late, milliseconds apart,
+    with a second's motion between them."""
+    late_turn: float = 1.5
+    """The same for turns [rad]."""
     heading_from: HeadingSource = "detect"
     """What the odometry's heading comes from. Only the encoders' tells something that the
     gyroscope does not. "detect" watches the robot stand: wheels then tell no turn at all, an IMU's

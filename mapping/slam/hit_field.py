@@ -14,6 +14,9 @@ from mapping.slam.hit_field_kernels import SIDES, shares_of, smear
 BELL_SUM = float(np.sqrt(2.0 * np.pi))
 """Bells one cell apart along a wall add up to this height, in the height of one."""
 
+Window = tuple[int, int, int, int]
+"""First row and one past the last, first column and one past the last."""
+
 
 class HitField:
     """A square field of readings around a place."""
@@ -33,7 +36,6 @@ class HitField:
         side = 2 * self._half_cells
         self.density: NDArray[np.float32] = np.zeros((side, side, SIDES), dtype=np.float32)
         self.corner = np.zeros(2)
-        self._maxima: NDArray[np.uint8] | None = None
 
     @property
     def center(self) -> NDArray[np.float64]:
@@ -45,7 +47,6 @@ class HitField:
         cells = np.round(np.asarray(center, dtype=np.float64) / self.resolution)
         self.corner = (cells - self._half_cells) * self.resolution
         self.density[:] = 0.0
-        self._maxima = None
 
     def add(self, pose: ArrayLike, surface: NDArray[np.float32]) -> None:
         """Smear the walls that a scan saw into the field.
@@ -55,19 +56,17 @@ class HitField:
             surface: The walls ``(n, 5)``: x, y [m], weight and the direction that they face, points
                 a resolution apart.
         """
-        self._maxima = None
         smear(self.density, self.to_cells(pose), surface, self.resolution, 1.0 / BELL_SUM)
 
-    def maxima(self, levels: int) -> NDArray[np.uint8]:
-        """Block maxima ``(levels or more, rows, columns)`` of the share of readings that are known.
+    def maxima(self, window: Window, levels: int) -> NDArray[np.uint8]:
+        """Block maxima ``(levels, rows, columns)`` of what is known in a window of the field.
 
-        A share, in 255ths, is that of readings at a cell that belong to known walls.
+        Of each cell that is the share, in 255ths, of readings there that lie on known walls.
         """
-        if self._maxima is None or len(self._maxima) < levels:
-            shares = np.empty(self.density.shape[:2], dtype=np.uint8)
-            shares_of(self.density, shares)
-            self._maxima = block_maxima(shares, levels)
-        return self._maxima
+        top, bottom, left, right = window
+        shares = np.empty((bottom - top, right - left), dtype=np.uint8)
+        shares_of(self.density[top:bottom, left:right], shares)
+        return block_maxima(shares, levels)
 
     def to_cells(self, pose: ArrayLike) -> NDArray[np.float64]:
         """A pose ``(3,)`` with its position in cells from the corner."""

@@ -50,6 +50,8 @@ class KeyframeGraph:
         self._looks = np.empty((FIRST_ROOM, 2))
         self._ends = np.empty((FIRST_ROOM, 2), dtype=np.int64)
         self._lengths = np.empty(FIRST_ROOM)
+        self._views, self._views_state = np.zeros((0, 2)), (0, 0)
+        self._ways: dict[int, tuple[NDArray[np.float64], NDArray[np.int32]]] = {}
         self._variances: dict[tuple[int, int], tuple[float, float]] = {}
         self.corrections = 0
         """How often the poses were changed after the fact."""
@@ -65,14 +67,19 @@ class KeyframeGraph:
     @property
     def views(self) -> NDArray[np.float64]:
         """The middle of what each keyframe saw ``(n, 2)``, in the map frame."""
-        x, y, yaw = self.poses.T
-        look_x, look_y = self._looks[: len(self.clouds)].T
-        cos, sin = np.cos(yaw), np.sin(yaw)
-        return np.column_stack((x + cos * look_x - sin * look_y, y + sin * look_x + cos * look_y))
+        state = (len(self.clouds), self.corrections)
+        if state != self._views_state:
+            x, y, yaw = self.poses.T
+            look_x, look_y = self._looks[: len(self.clouds)].T
+            cos, sin = np.cos(yaw), np.sin(yaw)
+            view_x, view_y = x + cos * look_x - sin * look_y, y + sin * look_x + cos * look_y
+            self._views, self._views_state = np.column_stack((view_x, view_y)), state
+        return self._views
 
     def add(self, pose: Pose, cloud: ScanCloud) -> int:
         """Add a keyframe without edges; returns its number."""
         number = len(self.clouds)
+        self._ways.clear()
         self._poses, self._looks = _grown(self._poses, number), _grown(self._looks, number)
         self._poses[number] = pose
         self._looks[number] = look_of(cloud)
@@ -83,6 +90,7 @@ class KeyframeGraph:
     def connect(self, edge: Edge) -> None:
         """Add an edge between keyframes that there are."""
         number = len(self.edges)
+        self._ways.clear()
         self._ends, self._lengths = _grown(self._ends, number), _grown(self._lengths, number)
         self._ends[number] = edge.a, edge.b
         dx, dy, turn = edge.pose
@@ -108,14 +116,18 @@ class KeyframeGraph:
         Keyframes farther than ``limit`` are infinitely far. The second array ``(n,)`` holds the
         keyframe before each on its way, negative where there is none.
         """
+        if keyframe not in self._ways:
+            self._ways[keyframe] = self._measured_ways(keyframe)
+        distances, before = self._ways[keyframe]
+        return np.where(distances <= limit, distances, np.inf), before
+
+    def _measured_ways(self, keyframe: int) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
         count, edges = len(self.clouds), len(self.edges)
         a, b = self._ends[:edges].T
-        lengths = self._lengths[:edges]
-        graph = csr_matrix((lengths, (a, b)), shape=(count, count))
-        distances, before = dijkstra(
-            graph, directed=False, indices=keyframe, limit=limit, return_predecessors=True
-        )
-        return distances, before
+        ends = np.concatenate((a, b)), np.concatenate((b, a))
+        lengths = np.tile(self._lengths[:edges], 2)
+        graph = csr_matrix((lengths, ends), shape=(count, count))
+        return dijkstra(graph, indices=keyframe, return_predecessors=True)
 
     def uncertainty(
         self, keyframe: int, other: int, before: NDArray[np.int32]

@@ -28,6 +28,7 @@ class MapPainter:
         self._next_drawn = np.zeros((0, 3))
         self._next_grid: OccupancyGrid | None = None
         self._next = 0
+        self._error, self._error_state = 0.0, (0, 0)
 
     def __len__(self) -> int:
         return len(self._kept)
@@ -48,10 +49,13 @@ class MapPainter:
     @property
     def error(self) -> float:
         """How far from its corrected place anything is drawn [m], about."""
-        if len(self._drawn) == 0:
-            return 0.0
-        off = between(self._extended(self._drawn), self._graph.poses)
-        return float(np.max(np.hypot(off[:, 0], off[:, 1]) + ARM * np.abs(off[:, 2])))
+        state = (self.grid.redraws, self._graph.corrections)
+        if state != self._error_state:
+            self._drawn = self._extended(self._drawn)
+            off = between(self._drawn, self._graph.poses)
+            errors = np.hypot(off[:, 0], off[:, 1]) + ARM * np.abs(off[:, 2])
+            self._error, self._error_state = float(np.max(errors, initial=0.0)), state
+        return self._error
 
     @property
     def is_redrawing(self) -> bool:
@@ -82,10 +86,11 @@ class MapPainter:
     def _extended(self, drawn: Pose) -> Pose:
         """Drawn poses with those of newer keyframes, each where it lies from the one before it."""
         poses = self._graph.poses
+        if len(drawn) == len(poses):
+            return drawn
         if len(drawn) == 0:
             return poses.copy()
-        rows = list(drawn)
+        rows = [drawn[-1]]
         for keyframe in range(len(drawn), len(poses)):
-            motion = between(poses[keyframe - 1], poses[keyframe])
-            rows.append(compose(rows[-1], motion))
-        return np.array(rows) if len(rows) > len(drawn) else drawn
+            rows.append(compose(rows[-1], between(poses[keyframe - 1], poses[keyframe])))
+        return np.concatenate((drawn, rows[1:]))

@@ -20,7 +20,7 @@ from mapping.messages import Imu, LaserScan, Odometry
 from mapping.odometry_mapper import checked_pose
 from mapping.ogm import OgmConfig, growing_grid
 from mapping.pose_history import PoseHistory
-from mapping.sensor_model import LDS_01, LONG_RANGE, RangeNoise, read_beams
+from mapping.sensor_model import LDS_01, RangeNoise, read_beams
 from mapping.slam.fusion import FusedTrack
 from mapping.slam.fusion_config import FusionConfig
 from mapping.slam.keyframe_graph import KeyframeGraph, edge_between, look_of
@@ -35,7 +35,7 @@ FARTHEST_POINT = 15.0
 """Points farther away are not matched [m]: a degree of yaw moves them by five cells."""
 
 FINE_CELL, COARSE_CELL = 0.03, 0.05
-"""Cells of the field [m] for near and for far lidars. The bells are as wide: the narrower, the less
+"""Cells of the field [m] for an LDS-01 at 5 Hz, and for lidars of which nothing is known. The bells are as wide: the narrower, the less
 a wall draws what lies beside it; but a prediction must fall within them."""
 
 START_COVARIANCE = np.diag(np.square([0.004, 0.004, 0.0015]))
@@ -62,8 +62,8 @@ class ScanMatchConfig:
     range_noise: RangeNoise = LDS_01
     """How far the lidar's readings scatter."""
     field_resolution: float | None = None
-    """Edge of a cell of the field that scans are matched with [m]; None takes 3 cm for a lidar of
-    the LDS-01's range and 5 cm for one that sees farther."""
+    """Edge of a cell of the field that scans are matched with [m]; None takes 3 cm for an LDS-01 and
+    5 cm for other lidars, whose scans may come seldom and from anywhere."""
     local_keyframes: int = 15
     """A scan is matched with at most so many keyframes."""
     keyframe_distance: float = 0.3
@@ -96,7 +96,7 @@ class ScanMatchConfig:
         """Edge of a cell of the field [m]."""
         if self.field_resolution is not None:
             return self.field_resolution
-        return FINE_CELL if self.max_range <= LONG_RANGE else COARSE_CELL
+        return FINE_CELL if self.range_noise == LDS_01 else COARSE_CELL
 
     @property
     def drawing(self) -> OgmConfig:
