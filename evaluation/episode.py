@@ -40,8 +40,8 @@ class EpisodeConfig:
     world: str = "lim_room"
     """A built-in world by name, or a floor plan file: YAML, map_server YAML, HouseExpo JSON, text
     maze."""
-    mapper: str = "ogm"
-    """graph, scan_match, ogm or occgridmapp."""
+    mapper: str = "graph"
+    """graph, scan_match, gmapping, ogm or occgridmapp."""
     navigator: str = "frontier"
     """frontier, reactive, or waypoints: through given places."""
     waypoints: str = ""
@@ -256,6 +256,7 @@ def _drive(
         if len(track) == 0:
             raise  # there is nothing to keep yet
         stop_reason = INTERRUPTED
+    agent.mapper.finish()
     wall_time = perf_counter() - started - telling
     coverages.append((float(observation["time"][0]), meter.measure(agent.mapper.grid)))
     times, values = np.array(coverages).T

@@ -125,7 +125,8 @@ def run_replay(
             raise  # there is nothing to keep yet
         stop_reason = INTERRUPTED
     started = perf_counter()
-    grid, known = mapper.grid, mapper.trajectory  # a mapper may have put work off until now
+    mapper.finish()
+    grid, known = mapper.grid, mapper.trajectory
     wall_time = feed.wall_time + perf_counter() - started
     told = odometry_at_scans(log.scans[: feed.scans], odometry)
     return Replay(

@@ -91,22 +91,25 @@ def map_scores(scores: MapScores | None) -> dict[str, float | None]:
 def trajectory_scores(
     corrected: Trajectory, online: Trajectory, truth: Trajectory | None
 ) -> dict[str, float | None]:
-    """Errors of a trajectory, unaligned: map and world share their frame.
+    """Errors of a trajectory, unaligned but for one: map and world share their frame.
 
     Args:
         corrected: Where the mapper takes the robot to have been, in the end: ``ate_rmse_m``,
             ``ate_max_m``, ``yaw_error_max_deg``, and per second ``rpe_trans_rmse_m`` and
-            ``rpe_rot_rmse_deg``.
+            ``rpe_rot_rmse_deg``. ``ate_aligned_rmse_m`` is after the rigid motion that fits best,
+            as benchmarks have it that do not know the start.
         online: Where it took it to be at the time: ``ate_online_rmse_m``.
         truth: The true trajectory; without it, or without poses in its time, all are None.
     """
-    keys = ("ate_rmse_m", "ate_max_m", "yaw_error_max_deg", "ate_online_rmse_m")
-    scores: dict[str, float | None] = dict.fromkeys((*keys, "rpe_trans_rmse_m", "rpe_rot_rmse_deg"))
+    keys = ("ate_rmse_m", "ate_max_m", "yaw_error_max_deg")
+    others = ("ate_aligned_rmse_m", "ate_online_rmse_m", "rpe_trans_rmse_m", "rpe_rot_rmse_deg")
+    scores: dict[str, float | None] = dict.fromkeys((*keys, *others))
     if truth is None:
         return scores
     if _overlap(corrected, truth):
         absolute, relative = score_trajectory(corrected, truth), score_relative(corrected, truth)
-        scores.update({key: getattr(absolute, key) for key in keys[:3]})
+        scores.update({key: getattr(absolute, key) for key in keys})
+        scores["ate_aligned_rmse_m"] = score_trajectory(corrected, truth, align=True).ate_rmse_m
         if relative is not None:
             scores["rpe_trans_rmse_m"] = relative.trans_rmse_m
             scores["rpe_rot_rmse_deg"] = relative.rot_rmse_deg

@@ -21,7 +21,7 @@ SHORT = EpisodeConfig(world="tiny_room", seed=3, time_limit=15.0)
 DESIGN_KEYS = set(
     "world mapper navigator seed stop_reason sim_time_s wall_time_s real_time_factor coverage "
     "t90_s t95_s t99_s path_length_m contacts min_clearance_m f1_5cm f1_10cm adnn_m h95_m free_iou "
-    "false_free wall_thickness_ratio ate_rmse_m ate_max_m yaw_error_max_deg ate_online_rmse_m "
+    "false_free wall_thickness_ratio ate_rmse_m ate_max_m yaw_error_max_deg ate_aligned_rmse_m ate_online_rmse_m "
     "rpe_trans_rmse_m rpe_rot_rmse_deg map_updates scans_dropped map_update_ms_p50 "
     "map_update_ms_p99 map_update_rate_hz map_file_kb peak_rss_mb home_distance_m "
     "dropped_frontiers".split()
