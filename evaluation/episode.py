@@ -20,7 +20,9 @@ from mapping.geometry import Pose
 from mapping.grid import OccupancyGrid
 from mapping.mappers import make_mapper
 from mapping.messages import ODOMETRY_COLUMNS
+from mapping.pose_graph import PoseGraph
 from mapping.pose_history import PoseHistory
+from mapping.slam.keyframe_pose_graph import pose_graph_of
 from mapping.truth import TruthMap
 from nav.agent import MappingAgent
 from nav.navigator import RUNNING, DroppedFrontier
@@ -137,6 +139,8 @@ class Episode:
     dropped_frontiers: tuple[DroppedFrontier, ...]
     recorder: Recorder | None = None
     """What kept the run's messages, if they were to be kept."""
+    pose_graph: PoseGraph | None = None
+    """The mapper's keyframes and the matches between them, if it keeps such."""
 
     @property
     def sim_time(self) -> float:
@@ -278,6 +282,7 @@ def _drive(
         navigator_seconds=np.array(agent.navigator_seconds, dtype=np.float64),
         dropped_frontiers=agent.navigator.dropped_frontiers,
         recorder=recorder,
+        pose_graph=pose_graph_of(agent.mapper),
     )
 
 

@@ -18,9 +18,11 @@ from mapping.log_editing import reach_of, rebased
 from mapping.mapper import Mapper
 from mapping.mappers import CONFIGS, make_mapper
 from mapping.odometry_trajectory import odometry_at_scans, odometry_trajectory
+from mapping.pose_graph import PoseGraph
 from mapping.pose_history import PoseHistory
 from mapping.sensor_model import LONG_RANGE, RANGE_NOISES, LidarName, noise_of_reach
 from mapping.settings import parse_settings
+from mapping.slam.keyframe_pose_graph import pose_graph_of
 from mapping.trajectory import Trajectory, completed, poses_at
 
 COMPLETE, INTERRUPTED = "complete", "interrupted"
@@ -91,6 +93,8 @@ class Replay:
     scans_dropped: int
     map_update_seconds: NDArray[np.float64]
     """Wall time of each map update ``(n,)`` [s]."""
+    pose_graph: PoseGraph | None = None
+    """The mapper's keyframes and the matches between them, if it keeps such."""
 
 
 def run_replay(
@@ -142,6 +146,7 @@ def run_replay(
         map_updates=mapper.updates,
         scans_dropped=mapper.scans_dropped,
         map_update_seconds=np.array(feed.map_update_seconds),
+        pose_graph=pose_graph_of(mapper),
     )
 
 

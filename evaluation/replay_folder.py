@@ -5,7 +5,7 @@ from typing import Any
 
 from evaluation.replay import Replay
 from evaluation.replay_result import result_of_replay, truth_of
-from evaluation.run_folder import describe, start_run, write_json
+from evaluation.run_folder import describe, start_run, write_json, write_pose_graph
 from mapping.io.map_server import write_map
 from mapping.io.tum import write_tum
 from mapping.plot import save_map_picture
@@ -24,6 +24,7 @@ def write_replay(replay: Replay, folder: Path) -> dict[str, Any]:
     write_map(folder / "map.yaml", replay.grid)
     write_tum(folder / "trajectory.tum", trajectory.stamps, trajectory.poses)
     write_tum(folder / "odometry.tum", replay.odometry.stamps, replay.odometry.poses)
+    write_pose_graph(folder, replay.pose_graph)
     true_poses = recording.ground_truth
     if true_poses is None:
         (folder / "ground_truth.tum").unlink(missing_ok=True)  # an earlier run's

@@ -3,16 +3,18 @@
 import resource
 import sys
 from dataclasses import asdict
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from evaluation.clearance import min_clearance
-from evaluation.episode import Episode
 from mapping.compare import MapScores, score_map
 from mapping.trajectory import Trajectory, path_length
 from mapping.trajectory_scores import score_relative, score_trajectory
+
+if TYPE_CHECKING:  # a replay needs no simulator, which an episode imports
+    from evaluation.episode import Episode
 
 TIMING_KEYS = (
     "wall_time_s",
@@ -24,7 +26,7 @@ TIMING_KEYS = (
 """Keys that differ between runs of the same seed; every other is the same to the last digit."""
 
 
-def result_of(episode: Episode, map_file_kb: float | None) -> dict[str, Any]:
+def result_of(episode: "Episode", map_file_kb: float | None) -> dict[str, Any]:
     """Every key of ``result.json``; a value that cannot exist is None, never 0.
 
     Args:
@@ -65,7 +67,7 @@ def result_of(episode: Episode, map_file_kb: float | None) -> dict[str, Any]:
     }
 
 
-def _times_of_coverage(episode: Episode) -> dict[str, float | None]:
+def _times_of_coverage(episode: "Episode") -> dict[str, float | None]:
     """When coverage first reached 90, 95 and 99 % [s], measured once a simulated second."""
     times: dict[str, float | None] = {}
     for share in (90, 95, 99):

@@ -1,4 +1,4 @@
-"""Turns an episode into the files of a run folder."""
+"""What the folders of all runs share: being writable, the description of the run, JSON."""
 
 import json
 import platform
@@ -8,17 +8,16 @@ from contextlib import contextmanager
 from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from evaluation.episode import Episode, EpisodeConfig
-from evaluation.recorder import remove_recording
-from evaluation.replay import ReplayConfig
-from evaluation.result import result_of
 from mapping.errors import TestbedError
 from mapping.io.atomic import write_atomically
-from mapping.io.map_server import write_map
-from mapping.io.tum import write_tum
-from mapping.plot import save_map_picture
+from mapping.io.g2o import write_g2o
+from mapping.pose_graph import PoseGraph
+
+if TYPE_CHECKING:  # a replay needs no simulator, which an episode imports
+    from evaluation.episode import EpisodeConfig
+    from evaluation.replay import ReplayConfig
 
 RECORDED_VERSIONS = ("burger-testbed", "mujoco", "gymnasium", "numpy", "scipy", "numba", "gtsam")
 
@@ -40,39 +39,6 @@ def run_folder(folder: Path) -> Iterator[None]:
         raise
 
 
-def write_run(episode: Episode, folder: Path) -> dict[str, Any]:
-    """Write every file of the run folder, each whole or not at all; returns the result.
-
-    ``config.json``, ``map.pgm`` and ``map.yaml``, ``map.png``, the three trajectories, of a
-    recorded episode ``log.carmen`` and ``bag/``, and last ``result.json``: a folder that has one
-    is complete.
-    """
-    start_run(folder)
-    write_json(folder / "config.json", describe(episode.config))
-    write_map(folder / "map.yaml", episode.grid)
-    track = episode.track
-    stamps = track.stamps
-    trajectory = episode.trajectory
-    write_tum(folder / "trajectory.tum", trajectory.stamps, trajectory.poses)
-    write_tum(folder / "ground_truth.tum", stamps, track.pose_world)
-    write_tum(folder / "odometry.tum", stamps, track.pose_odom)
-    map_file_kb = (folder / "map.pgm").stat().st_size / 1e3
-    result = result_of(episode, map_file_kb)
-    save_map_picture(
-        folder / "map.png",
-        episode.grid,
-        path=trajectory.poses[:, :2],
-        truth=episode.truth,
-        title=title_of(result),
-    )
-    if episode.recorder is None:
-        remove_recording(folder)
-    else:
-        episode.recorder.write(folder, episode.grid)
-    write_json(folder / "result.json", result)
-    return result
-
-
 def start_run(folder: Path) -> None:
     """Make sure of the folder and take away an earlier run's result: it would vouch for this one.
 
@@ -83,18 +49,7 @@ def start_run(folder: Path) -> None:
     (folder / "result.json").unlink(missing_ok=True)
 
 
-def title_of(result: dict[str, Any]) -> str:
-    """One line that says what a picture of a run shows."""
-    f1 = result["f1_5cm"]
-    world = Path(result["world"]).stem
-    return (
-        f"{world}, {result['mapper']}, seed {result['seed']}: {result['stop_reason']} "
-        f"after {result['sim_time_s']:.0f} s, coverage {result['coverage']:.3f}, "
-        f"F1(5 cm) {'-' if f1 is None else format(f1, '.3f')}"
-    )
-
-
-def describe(config: EpisodeConfig | ReplayConfig) -> dict[str, Any]:
+def describe(config: "EpisodeConfig | ReplayConfig") -> dict[str, Any]:
     """Everything that defines the run: the config, the versions, the commit."""
     told = asdict(config)
     return {
@@ -103,6 +58,14 @@ def describe(config: EpisodeConfig | ReplayConfig) -> dict[str, Any]:
         "python": platform.python_version(),
         "git_commit": _git_commit(),
     }
+
+
+def write_pose_graph(folder: Path, graph: PoseGraph | None) -> None:
+    """Write the mapper's pose graph as ``graph.g2o``; without one take away an earlier run's."""
+    if graph is None:
+        (folder / "graph.g2o").unlink(missing_ok=True)
+    else:
+        write_g2o(folder / "graph.g2o", graph)
 
 
 def write_json(path: Path, content: dict[str, Any]) -> None:

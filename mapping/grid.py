@@ -5,6 +5,7 @@ lower-left corner of cell (0, 0), as map_server has it, so a cell's centre is
 ``origin + (index + 0.5) * resolution``.
 """
 
+import logging
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,12 +13,18 @@ from numpy.typing import ArrayLike, NDArray
 
 from mapping.errors import TestbedError
 
+logger = logging.getLogger(__name__)
+
 UNKNOWN, FREE, OCCUPIED = -1, 0, 100
 """Cell states, with the values that nav_msgs/OccupancyGrid gives them."""
 
 TILE_CELLS = 240
 """A growing grid grows by whole tiles of this many cells, so that it seldom has to; a number that
 many whole numbers divide, so that coarser grids laid over it keep their cells."""
+
+MOST_CELLS = 64_000_000
+"""A growing grid has at most so many cells: 80 x 80 m at 1 cm, or 400 x 400 m at 5 cm, in 256 MB.
+An odometry that jumps by a kilometre must not take all memory."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -34,6 +41,8 @@ class GridConfig:
     """Cells along x at the start."""
     grows: bool = True
     """Whether the grid grows in tiles to hold what is seen; else what lies outside is dropped."""
+    most_cells: int = MOST_CELLS
+    """It never grows beyond so many cells: what lies farther out is then dropped as well."""
     occupied_above: float = 3.0
     """A cell with more log odds than this is occupied (thesis 4.3.6)."""
     free_below: float = -3.0
@@ -45,6 +54,8 @@ class GridConfig:
             raise TestbedError(f"resolution: {self.resolution} m; must be a finite number above 0")
         if self.rows < 1 or self.columns < 1:
             raise TestbedError(f"grid size: {self.rows} x {self.columns} cells; must be at least 1")
+        if self.most_cells < 1:
+            raise TestbedError(f"most_cells: {self.most_cells}; must be at least 1")
 
 
 class OccupancyGrid:
@@ -54,6 +65,7 @@ class OccupancyGrid:
         self.config = config or GridConfig()
         self.resolution = self.config.resolution
         self.origin = np.array(self.config.origin, dtype=np.float64)
+        self._is_full = False
         self.redraws = 0
         """How often a mapper has drawn the whole map anew; after that, everything may differ."""
         self.log_odds: NDArray[np.float32] = np.zeros(
@@ -106,7 +118,9 @@ class OccupancyGrid:
     def cover(self, left: float, right: float, bottom: float, top: float) -> None:
         """Grow by whole tiles until the box [m] lies inside; a grid of fixed size stays as it is.
 
-        Cells keep their places in the world exactly: the origin moves by whole cells.
+        Cells keep their places in the world exactly: the origin moves by whole cells. A box that
+        would take more than ``most_cells`` is refused: the grid stays as it is, and what lies
+        outside of it is not drawn. That is told once, as a warning.
         """
         west, east, south, north = self.extent
         inside = west <= left and right < east and south <= bottom and top < north
@@ -114,25 +128,50 @@ class OccupancyGrid:
             return
         if not np.all(np.isfinite([left, right, bottom, top])):
             raise TestbedError(f"grid box: {left, right, bottom, top}; must be finite")
-        (first_row, first_column), (last_row, last_column) = self.world_to_cell(
-            [[left, bottom], [right, top]]
-        )
         rows, columns = self.shape
-        below, before = _tiles(-first_row), _tiles(-first_column)
-        above, after = _tiles(last_row - rows + 1), _tiles(last_column - columns + 1)
-        if below or before or above or after:
-            self.log_odds = np.pad(self.log_odds, ((below, above), (before, after)))
-            self.origin = self.origin - np.array([before, below]) * self.resolution
+        before, below = self._tiles_beyond(-np.floor(self._in_cells([left, bottom])))
+        after, above = self._tiles_beyond(
+            np.floor(self._in_cells([right, top])) + 1.0 - np.array([columns, rows])
+        )
+        if (rows + below + above) * (columns + before + after) > self.config.most_cells:
+            self._refuse(left, right, bottom, top)
+            return
+        widths = ((int(below), int(above)), (int(before), int(after)))
+        self.log_odds = np.pad(self.log_odds, widths)
+        self.origin = self.origin - np.array([before, below]) * self.resolution
 
     def copy(self) -> "OccupancyGrid":
         """A grid of its own with the same cells, for drawing while mapping goes on."""
         twin = OccupancyGrid.__new__(OccupancyGrid)
         twin.config, twin.resolution = self.config, self.resolution
-        twin.redraws = self.redraws
+        twin.redraws, twin._is_full = self.redraws, self._is_full
         twin.origin, twin.log_odds = self.origin.copy(), self.log_odds.copy()
         return twin
 
+    def _in_cells(self, points: ArrayLike) -> NDArray[np.float64]:
+        """Points ``(..., 2)`` as (x, y) [m] in cells from the grid's corner, however far away."""
+        with np.errstate(over="ignore"):
+            return np.asarray((np.asarray(points) - self.origin) / self.resolution)
 
-def _tiles(cells: int) -> int:
-    """How many cells to add, in whole tiles, to gain at least ``cells`` of them."""
-    return -(-max(int(cells), 0) // TILE_CELLS) * TILE_CELLS
+    def _tiles_beyond(self, cells: NDArray[np.float64]) -> list[float]:
+        """How many cells to add, in whole tiles, to gain at least ``cells`` ``(2,)`` of them.
+
+        Numbers that no grid has cannot be whole numbers; they come back as they are.
+        """
+        tiles: list[float] = (np.ceil(np.maximum(cells, 0.0) / TILE_CELLS) * TILE_CELLS).tolist()
+        return tiles
+
+    def _refuse(self, left: float, right: float, bottom: float, top: float) -> None:
+        """Warn, the first time, that the grid will not grow to hold a box [m]."""
+        if not self._is_full:
+            self._is_full = True
+            logger.warning(
+                "x %.6g to %.6g m, y %.6g to %.6g m would take more than %d cells of %g m: "
+                "what lies outside the map is not drawn",
+                left,
+                right,
+                bottom,
+                top,
+                self.config.most_cells,
+                self.resolution,
+            )

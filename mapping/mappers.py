@@ -15,7 +15,8 @@ from mapping.ogm import Ogm, OgmConfig, growing_grid
 from mapping.slam.gmapping import Gmapping
 from mapping.slam.gmapping_config import GmappingConfig
 from mapping.slam.graph_slam import GraphConfig, GraphSlam
-from mapping.slam.scan_match import ScanMatch, ScanMatchConfig
+from mapping.slam.scan_match import ScanMatch
+from mapping.slam.scan_match_config import ScanMatchConfig
 
 Config = TypeVar(
     "Config", OgmConfig, OccGridMappConfig, ScanMatchConfig, GmappingConfig, GraphConfig

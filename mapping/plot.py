@@ -10,6 +10,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from numpy.typing import ArrayLike, NDArray
 
+from mapping.cell_image import CellImage
 from mapping.grid import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
 from mapping.io.atomic import write_atomically
 from mapping.io.map_server import MapFile
@@ -47,7 +48,7 @@ def draw_map(
         truth: Its walls are outlined.
     """
     states, extent = _known_states(grid)
-    ax.imshow(_colours(states), extent=extent, origin="lower", interpolation="nearest", zorder=0)
+    CellImage(ax, _colours(states), extent)
     if truth is not None:
         _outline(ax, truth)
     if path is not None and len(np.asarray(path)) > 0:

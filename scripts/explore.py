@@ -7,8 +7,9 @@ from typing import Annotated, Any
 import tyro
 
 from evaluation.episode import Episode, EpisodeConfig, Progress, run_episode
+from evaluation.episode_folder import write_run
 from evaluation.recorder import Recorder
-from evaluation.run_folder import run_folder, write_run
+from evaluation.run_folder import run_folder
 from scripts.arguments import parse
 from scripts.first_run import compile_if_needed
 from scripts.live_map import LiveMap, can_draw

@@ -14,7 +14,8 @@ from mapping.grid import GridConfig
 from mapping.slam.loop_closer import LoopCloser, LoopConfig
 from mapping.slam.pose_graph_optimizer import PoseGraphOptimizer
 from mapping.slam.scan_cloud import ScanCloud
-from mapping.slam.scan_match import ScanMatch, ScanMatchConfig
+from mapping.slam.scan_match import ScanMatch
+from mapping.slam.scan_match_config import ScanMatchConfig
 from mapping.slam.sweep import Sweep
 
 
@@ -59,7 +60,9 @@ class GraphSlam(ScanMatch):
         super().__init__(config, start_pose_map=start_pose_map, grid=grid)
         self.loops = 0
         """How many edges that close loops there are."""
-        self._closer = LoopCloser(self.graph, self._local_config(), config.matcher, config.loops)
+        self._closer = LoopCloser(
+            self.graph, config.local_map(config.way), config.matcher, config.loops
+        )
         self._optimizer = PoseGraphOptimizer()
         self._resting = 0
         self._may_keep = 0
@@ -84,30 +87,30 @@ class GraphSlam(ScanMatch):
         return number
 
     def _close_loops(self, number: int) -> None:
-        edges = self._closer.edges(number, self._local.keyframes)
+        edges = self._closer.edges(number, self._tracker.local.keyframes)
         for edge in edges:
             self.graph.connect(edge)
         if edges:
             self.loops += len(edges)
             self._resting = self.config.rest
-            place = between(self.graph.poses[number], self._pose)
+            place = between(self.graph.poses[number], self._tracker.pose)
             self._correct()
-            self._pose = compose(self.graph.poses[number], place)
+            self._tracker.pose = compose(self.graph.poses[number], place)
 
     def _correct(self, rounds: int = 1) -> None:
         """Move the keyframes to where all edges agree best."""
         reference = self._nearest
-        place = between(self.graph.poses[reference], self._pose)
+        place = between(self.graph.poses[reference], self._tracker.pose)
         self.graph.correct(self._optimizer.optimize(self.graph.poses, self.graph.edges, rounds))
-        self._pose = compose(self.graph.poses[reference], place)
+        self._tracker.pose = compose(self.graph.poses[reference], place)
 
     def _keep(self, sweep: Sweep) -> None:
         """Keep the scan if it shows something new; go on drawing the new map, or begin one."""
         config = self.config
         if self._may_keep > 0 and self._moved_enough():
             self._may_keep -= 1
-            self._kept_pose = self._pose
-            self.painter.keep(self._nearest, self._pose, sweep)
+            self._kept_pose = self._tracker.pose
+            self.painter.keep(self._nearest, self._tracker.pose, sweep)
         self.painter.work(config.redraw_sweeps)
         if not self.painter.is_redrawing and self.painter.error > config.redraw_above:
             self.painter.redraw()
@@ -116,5 +119,5 @@ class GraphSlam(ScanMatch):
         """Whether the robot has moved since the last scan that was kept."""
         if self._kept_pose is None:
             return True
-        x, y, turn = between(self._kept_pose, self._pose)
+        x, y, turn = between(self._kept_pose, self._tracker.pose)
         return bool(np.hypot(x, y) > self.config.keep_shift or abs(turn) > self.config.keep_turn)

@@ -19,7 +19,7 @@ TAPS = 4
 """Cells along each axis that a cubic B-spline reads."""
 
 KNOWN = 0.2
-"""A reading at this density, a fifth of what one scan makes of a wall, lies half on a known wall."""
+"""A reading at this density, a fifth of a wall seen by one scan, lies half on a known wall."""
 
 SIDES = 4
 """Layers of a field."""

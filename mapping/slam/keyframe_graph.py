@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import dijkstra
 
-from mapping.geometry import Pose, between
+from mapping.geometry import Pose, between, compose
 from mapping.slam.scan_cloud import ScanCloud
 
 FIRST_ROOM = 256
@@ -127,7 +127,8 @@ class KeyframeGraph:
         ends = np.concatenate((a, b)), np.concatenate((b, a))
         lengths = np.tile(self._lengths[:edges], 2)
         graph = csr_matrix((lengths, ends), shape=(count, count))
-        return dijkstra(graph, indices=keyframe, return_predecessors=True)
+        distances, before = dijkstra(graph, indices=[keyframe], return_predecessors=True)
+        return distances[0], before[0]
 
     def uncertainty(
         self, keyframe: int, other: int, before: NDArray[np.int32]
@@ -156,6 +157,11 @@ class KeyframeGraph:
 def look_of(cloud: ScanCloud) -> NDArray[np.float64]:
     """The middle of what a scan saw ``(2,)`` in its own frame: near 0 if it looked all around."""
     return cloud.points.mean(axis=0) if len(cloud) else np.zeros(2)
+
+
+def view_of(pose: Pose, cloud: ScanCloud) -> NDArray[np.float64]:
+    """The middle of what a scan saw from a pose ``(2,)``, in the frame of the pose."""
+    return compose(pose, np.append(look_of(cloud), 0.0))[:2]
 
 
 def sight_of(cloud: ScanCloud) -> float:

@@ -28,6 +28,9 @@ same."""
 DETOUR = 3.0
 """A place is come back to when the way to it along the edges is this many times its distance."""
 
+LEAST_TURN = 0.02
+"""Yaws are searched at least so far to both sides [rad]."""
+
 PASS = 10
 """Keyframes so near in time belong to one pass of the robot."""
 
@@ -57,7 +60,7 @@ class LoopConfig:
     far_score: float = 0.7
     """The same for a place that is not believed at once."""
     apart: float = 1.5
-    """Two places found are believed if so much way lies between them [m]: else they are one view."""
+    """A place found twice is believed if so much way lies between [m]; else it was one view."""
     together: int = 2
     """Or if so many agree with the newest one, however near."""
     fellows: int = 8
@@ -168,8 +171,9 @@ class LoopCloser:
         shift = min(config.sigmas * math.sqrt(place), config.widest_shift)
         if distances[nearest] > shift + near:
             return None
+        turn = min(config.sigmas * math.sqrt(yaw), config.widest_turn)
         least = 2.0 * self._map.config.resolution
-        return nearest, shift + least, min(config.sigmas * math.sqrt(yaw), config.widest_turn) + 0.02
+        return nearest, shift + least, turn + LEAST_TURN
 
     def _find(
         self, keyframe: int, far: int, shift: float, turn: float, apart_from: set[int]

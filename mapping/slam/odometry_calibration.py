@@ -35,7 +35,7 @@ class CalibrationConfig:
     """The same of how far ahead of its centre the robot turns about a point, as a lidar mounted
     elsewhere than the log says makes it seem to [m]."""
     least_share: float = 0.01
-    """No way or turn is surer than this share of itself, nor is a heading by this for each metre."""
+    """No way or turn is surer than this share of itself, nor a heading than this for each metre."""
     turn_arm: float = 0.2
     """A turn moves a place as much as a way of this for each radian [m]."""
     noise_step: float = 0.05
@@ -101,7 +101,8 @@ class OdometryCalibration:
         if has_gyro:
             least[2] = 0.0
             noise[2] = 1.0
-        return np.diag(noise * ((ahead, max(ahead, aside), turn) + least**2)) + SMALLEST
+        wide = noise * (np.array([ahead, max(ahead, aside), turn]) + least**2)
+        return np.asarray(np.diag(wide) + SMALLEST, dtype=np.float64)
 
     def learn(self, motion: Pose, matched: Pose, covariance: NDArray[np.float64]) -> None:
         """Compare a motion of the odometry with the same motion as matching gave it.

@@ -14,8 +14,8 @@ from mapping.slam.surface_kernels import normals_of, surface_of
 IDENTITY = np.zeros(3)
 
 LOOSE_WORTH = 0.2
-"""What a point counts that lies on no wall: on a corner or a leg, of which every place shows another
-side, and to which its neighbours on unseen sides are drawn."""
+"""What a point counts that lies on no wall: on a corner or a leg, of which every place shows
+another side, and to which its neighbours on unseen sides are drawn."""
 
 ALL_AROUND = 1.5 * np.pi
 """A lidar with a wider field of view than this [rad] looks to all sides."""

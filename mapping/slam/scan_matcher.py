@@ -26,15 +26,18 @@ prediction that is too sure of itself would never be found out."""
 SHARPEST = np.diag(np.square([0.002, 0.002, 0.001]))
 """No scan says better than this where it was taken [m^2, m^2, rad^2]."""
 
-FLAT = 1e-9
-"""A curvature smaller than this share of the largest is one that was taken out."""
+FLAT = 1e-6
+"""A curvature smaller than this share of the largest is none, or one that was taken out."""
 
 SURPRISING = 11.3
-"""A scan this far from the prediction, in squared standard deviations, was predicted wrongly: 1 % of
-three normal numbers lie farther out (chi-square)."""
+"""A scan this far from the prediction, in squared standard deviations, was predicted wrongly: one
+in a hundred lies farther out (chi-square, three degrees of freedom)."""
 
 NOTHING_TOLD = np.eye(3)
 """Information [1/m^2, 1/m^2, 1/rad^2] of a scan that tells nothing."""
+
+ANYWHERE = np.eye(3)
+"""The covariance that goes with it."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,6 +51,8 @@ class MatcherConfig:
     stands across gives about 0.5 for each reading on it."""
     least_score: float = 0.35
     """A match that explains a smaller share of the scan is refused."""
+    least_points: int = 10
+    """A scan with fewer points is refused: a wall or two could lie anywhere."""
     sharp_start: float = 1.0
     """A prediction this sure [cells, one standard deviation at the end of a typical beam] needs no
     search."""
@@ -108,9 +113,9 @@ def match_scan(
         score=0.0,
         refused=True,
         seen=predicted,
-        seen_covariance=np.linalg.inv(NOTHING_TOLD),
+        seen_covariance=ANYWHERE,
     )
-    if len(cloud) == 0:
+    if len(cloud) < config.least_points:
         return refused
     points = cloud.points / field.resolution
     prior = field.to_cells(predicted)
@@ -136,9 +141,9 @@ def match_scan(
     told = _information(curvature * per_metre, scatter * per_metre * config.togetherness)
     offset = seen - predicted
     offset[2] = wrap_to_pi(offset[2])
-    seen_covariance = np.linalg.inv(told + NOTHING_TOLD)
+    seen_covariance = _inverse(told + NOTHING_TOLD)
     surprise = offset @ np.linalg.solve(covariance + seen_covariance, offset) / SURPRISING
-    fused = np.linalg.inv(told + np.linalg.inv(covariance * max(surprise, 1.0)))
+    fused = _inverse(told + _inverse(covariance * max(surprise, 1.0)))
     found = predicted + fused @ told @ offset
     found[2] = wrap_to_pi(found[2])
     return Match(
@@ -165,6 +170,10 @@ def _information(
     softness = np.linalg.inv(told.T @ curvature @ told)
     covariance = softness @ (told.T @ scatter @ told) @ softness + told.T @ SHARPEST @ told
     return np.asarray(told @ np.linalg.inv(covariance) @ told.T)
+
+
+def _inverse(matrix: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.asarray(np.linalg.inv(matrix), dtype=np.float64)
 
 
 def _uncertainty(

@@ -81,7 +81,7 @@ def surface_of(
             if gap > spacing and not (is_wall and across <= ASLANT * gap):
                 continue
             joined += 0.5 * gap
-            steps = int(math.ceil(0.5 * gap / spacing))
+            steps = math.ceil(0.5 * gap / spacing)
             for k in range(steps):
                 share = 0.5 * (k + 0.5) / steps
                 surface[made, 0] = points[i, 0] + share * dx
@@ -106,8 +106,8 @@ def normals_of(
 ) -> NDArray[np.float64]:
     """Directions that the walls of readings face ``(n, 2)``; zeros where there is no wall.
 
-    They face the robot, at the origin. A direction is the axis of least spread of a reading and its neighbours on the same wall, if the spread along
-    the wall is much larger.
+    They face the robot, at the origin. A direction is the axis of least spread of a reading and its
+    neighbours on the same wall, if the spread along the wall is much larger.
 
     Args:
         points: Readings ``(n, 2)`` [m], in the order of their beams.

@@ -10,8 +10,8 @@ import pytest
 
 from envs.floor_plan import Route
 from evaluation.episode import EpisodeConfig, Progress, run_episode
+from evaluation.episode_folder import write_run
 from evaluation.result import TIMING_KEYS
-from evaluation.run_folder import write_run
 from evaluation.warm_up import TINY_ROOM
 from mapping.errors import TestbedError
 from mapping.io.map_server import read_map

@@ -10,8 +10,8 @@ import pytest
 from mcap.reader import make_reader
 
 from evaluation.episode import EpisodeConfig, Progress, run_episode
+from evaluation.episode_folder import write_run
 from evaluation.recorder import Recorder
-from evaluation.run_folder import write_run
 from evaluation.warm_up import TINY_ROOM
 from mapping.errors import TestbedError
 from mapping.geometry import compose

@@ -10,12 +10,12 @@ import pytest
 from envs.floor_plan import Cylinder, FloorPlan, Wall
 from envs.plan_yaml import write_plan
 from evaluation.episode import EpisodeConfig, run_episode
+from evaluation.episode_folder import write_run
 from evaluation.recorder import Recorder
 from evaluation.recording import Recording, check_recording, load_recording
 from evaluation.replay import ReplayConfig, run_replay
 from evaluation.replay_folder import write_replay
 from evaluation.result import TIMING_KEYS
-from evaluation.run_folder import write_run
 from evaluation.warm_up import TINY_ROOM
 from mapping.burger import LIDAR_POSE_BASE
 from mapping.errors import TestbedError

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mapping.burger import LIDAR_POSE_BASE, LIDAR_RANGE_MAX
-from mapping.geometry import Pose, compose
+from mapping.geometry import Pose, compose, transform_points
 from mapping.mapper import Mapper
 from mapping.messages import LaserScan, Odometry, Twist
 from mapping.sensor_model import LDS_01, range_sigma, read_beams
@@ -55,15 +55,19 @@ def corridor(half_length: float = 50.0, half_width: float = 0.8) -> Walls:
 
 
 def random_room(rng: np.random.Generator) -> Walls:
-    """A lopsided room around the origin with a few boxes and posts, none near the middle."""
-    angles = np.sort(np.arange(7) + rng.uniform(0.0, 0.7, 7)) * 2.0 * np.pi / 7
-    far = rng.uniform(1.8, 3.2, 7)
-    walls = [outline(np.column_stack((far * np.cos(angles), far * np.sin(angles))))]
+    """A room of four crooked walls around the origin, turned at random, with posts and boxes.
+
+    Nothing stands within 0.6 m of the origin.
+    """
+    half = rng.uniform(1.4, 2.6, 2)
+    corners = half * [(-1, -1), (1, -1), (1, 1), (-1, 1)] * rng.uniform(0.8, 1.1, (4, 2))
+    walls = [outline(corners)]
     for _ in range(3):
-        angle, away = rng.uniform(-np.pi, np.pi), rng.uniform(0.9, 1.3)
+        angle, away = rng.uniform(-np.pi, np.pi), rng.uniform(0.9, 1.2)
         x, y = away * np.cos(angle), away * np.sin(angle)
-        walls.append(post(x, y, float(rng.uniform(0.08, 0.2)), int(rng.choice([4, 12]))))
-    return np.concatenate(walls)
+        walls.append(post(x, y, float(rng.uniform(0.08, 0.25)), int(rng.choice([4, 12]))))
+    yaw = np.array([0.0, 0.0, rng.uniform(-np.pi, np.pi)])
+    return transform_points(yaw, np.concatenate(walls).reshape(-1, 2)).reshape(-1, 4)
 
 
 def ring() -> Walls:

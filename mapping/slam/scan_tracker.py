@@ -1,0 +1,112 @@
+"""Tells where the robot is: by odometry and gyroscope about, by each scan exactly."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from mapping.geometry import Pose, between, compose
+from mapping.messages import Imu, Odometry
+from mapping.slam.fusion import FusedTrack
+from mapping.slam.keyframe_graph import KeyframeGraph, view_of
+from mapping.slam.local_map import LocalMap
+from mapping.slam.odometry_calibration import OdometryCalibration
+from mapping.slam.scan_cloud import ScanCloud
+from mapping.slam.scan_match_config import ScanMatchConfig
+from mapping.slam.scan_matcher import match_scan
+
+START_COVARIANCE = np.diag(np.square([0.004, 0.004, 0.0015]))
+"""How sure the first pose is: as sure as the first match will be [m^2, m^2, rad^2]."""
+
+STILL_SHIFT, STILL_TURN = 5e-4, 5e-4
+"""A robot that moved less than this [m, rad] since its last scan is where it was."""
+
+
+class ScanTracker:
+    """The pose of the newest scan, in the frame of the keyframes, and the way since then."""
+
+    def __init__(
+        self, config: ScanMatchConfig, graph: KeyframeGraph, start_pose_map: Pose, way: float
+    ) -> None:
+        """Begin where the odometry begins.
+
+        Args:
+            config: How to match.
+            graph: The keyframes to match with.
+            start_pose_map: The pose ``(3,)`` where the odometry counts from.
+            way: Keyframes farther along the matches than this [m] are not matched with.
+        """
+        self.pose = start_pose_map
+        """Pose of the newest scan ``(3,)``; the start pose before the first."""
+        self.covariance = START_COVARIANCE
+        """How sure that is among the keyframes around ``(3, 3)``."""
+        self.local = LocalMap(graph, config.local_map(way))
+        self._matcher = config.matcher
+        self._track = FusedTrack(config.fusion)
+        self._calibration = OdometryCalibration(config.calibration)
+        self._has_gyro = False
+        self._scan_odom: Pose | None = None
+
+    def add(self, odometry: Sequence[Odometry], imu: Sequence[Imu]) -> None:
+        """Take the messages of one control period."""
+        self._track.add(odometry, imu)
+        self._has_gyro = self._has_gyro or len(imu) > 0
+
+    def poses_at(self, stamps: ArrayLike) -> Pose | None:
+        """Poses ``(n, 3)`` of the odometry at moments ``(n,)`` [s], None when it does not say."""
+        return self._track.poses_at(stamps)
+
+    def locate(self, cloud: ScanCloud, pose_odom: Pose, near: int) -> float:
+        """Find where a scan was taken; returns which share of it the keyframes explain, 0..1.
+
+        Args:
+            cloud: What it saw.
+            pose_odom: Where the odometry says that it was taken ``(3,)``.
+            near: The keyframe nearest to the last scan.
+        """
+        last = self._scan_odom
+        if last is None:
+            self.pose, self._scan_odom = compose(self.pose, pose_odom), pose_odom
+            self._track.mark()
+            return 0.0
+        motion = between(last, pose_odom)
+        if _is_still(motion):
+            return 1.0
+        spread, self._scan_odom = self._track.motion_covariance(), pose_odom
+        self._track.mark()
+        predicted = compose(self.pose, self._calibration.corrected(motion))
+        spread = self._calibration.widened(motion, spread, has_gyro=self._has_gyro)
+        covariance = _carried(self.covariance, self.pose, predicted, spread)
+        self.local.follow(near, view_of(predicted, cloud))
+        match = match_scan(self.local.field, cloud, predicted, covariance, self._matcher)
+        if not match.refused:
+            noise = covariance + match.seen_covariance
+            self._calibration.learn(motion, between(self.pose, match.seen), noise)
+        self.pose, self.covariance = match.pose, match.covariance
+        return match.score
+
+    def motion_since_scan(self) -> Pose | None:
+        """The motion since the newest scan ``(3,)``, from the start if there was none.
+
+        None before any odometry.
+        """
+        newest = self._track.newest
+        if newest is None or self._scan_odom is None:
+            return newest
+        return self._calibration.corrected(between(self._scan_odom, newest))
+
+
+def _is_still(motion: Pose) -> bool:
+    return math.hypot(motion[0], motion[1]) < STILL_SHIFT and abs(motion[2]) < STILL_TURN
+
+
+def _carried(
+    covariance: NDArray[np.float64], pose: Pose, moved: Pose, spread: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """The covariance after a motion, in the map frame."""
+    dx, dy = moved[:2] - pose[:2]
+    cos, sin = math.cos(pose[2]), math.sin(pose[2])
+    carry = np.array([[1.0, 0.0, -dy], [0.0, 1.0, dx], [0.0, 0.0, 1.0]])
+    turn = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
+    return np.asarray(carry @ covariance @ carry.T + turn @ spread @ turn.T)

@@ -1,0 +1,184 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from mapping.errors import TestbedError
+from mapping.geometry import Pose, between, compose
+from mapping.messages import LaserScan
+from mapping.slam.hit_field import HitField
+from mapping.slam.scan_cloud import ScanCloud
+from mapping.slam.scan_match import COARSE_CELL, FINE_CELL
+from mapping.slam.scan_matcher import MatcherConfig, match_scan
+from tests.mapping.slam.rooms import cloud_of, corridor, post, random_room, scan_of
+
+Array = NDArray[np.float64]
+CONFIG = MatcherConfig()
+SEEDS = st.integers(0, 10_000)
+CELLS = st.sampled_from([FINE_CELL, COARSE_CELL])
+UNSURE = np.diag(np.square([0.1, 0.1, 0.1]))
+"""Covariance of a prediction that is 10 cm and 6 degrees off, typically."""
+
+
+def field_of(clouds: list[ScanCloud], poses: list[Pose], cell: float) -> HitField:
+    """The field of scans around the origin."""
+    field = HitField(cell, 4.4, 1.0)
+    field.clear([0.0, 0.0])
+    for cloud, pose in zip(clouds, poses, strict=True):
+        field.add(pose, cloud.surface)
+    return field
+
+
+def sigmas(covariance: Array) -> Array:
+    return np.asarray(np.sqrt(np.diag(covariance)))
+
+
+@given(seed=SEEDS, cell=CELLS, is_noisy=st.booleans())
+@settings(max_examples=60)
+def test_a_scan_matched_with_its_own_map_returns_its_pose(
+    seed: int, cell: float, is_noisy: bool
+) -> None:
+    rng = np.random.default_rng(seed)
+    walls = random_room(rng)
+    pose = np.array([*rng.uniform(-0.3, 0.3, 2), rng.uniform(-np.pi, np.pi)])
+    cloud = cloud_of(scan_of(walls, pose, rng if is_noisy else None), cell)
+    # anywhere within the search window of three standard deviations, 0.3 m and 0.3 rad
+    predicted = compose(pose, rng.uniform(-0.28, 0.28, 3))
+    match = match_scan(field_of([cloud], [pose], cell), cloud, predicted, UNSURE, CONFIG)
+    apart = between(pose, match.pose)
+    assert not match.refused
+    assert np.hypot(*apart[:2]) < 0.1 * cell
+    # a tenth of a cell at the end of a beam of the typical 1.5 m
+    assert abs(apart[2]) < 0.1 * cell / 1.5
+    assert np.all(sigmas(match.covariance) < sigmas(UNSURE))
+
+
+@given(seed=SEEDS, cell=CELLS)
+@settings(max_examples=20)
+def test_a_pose_found_is_as_far_off_as_its_covariance_says(seed: int, cell: float) -> None:
+    rng = np.random.default_rng(seed)
+    walls = random_room(rng)
+    poses = [np.array([*rng.uniform(-0.2, 0.2, 2), rng.uniform(-3.0, 3.0)]) for _ in range(6)]
+    clouds = [cloud_of(scan_of(walls, pose, rng), cell) for pose in poses]
+    field = field_of(clouds[1:], poses[1:], cell)
+    predicted = poses[0] + rng.normal(0.0, 0.05, 3)
+    match = match_scan(field, clouds[0], predicted, UNSURE, CONFIG)
+    off = match.pose - poses[0]
+    off[2] = np.angle(np.exp(1j * off[2]))
+    # chi-square of three: 22 is exceeded by one in 15 000; five scans make a map with errors too,
+    # and the lidar sees the edges of posts from elsewhere: twice that
+    assert off @ np.linalg.solve(match.covariance, off) < 44.0
+
+
+@given(seed=SEEDS, cell=CELLS)
+@settings(max_examples=20)
+def test_along_a_bare_corridor_the_prediction_stays_and_is_no_surer(
+    seed: int, cell: float
+) -> None:
+    rng = np.random.default_rng(seed)
+    poses = [np.array([x, rng.normal(0.0, 0.1), rng.uniform(-3.0, 3.0)]) for x in (-1.0, -0.5, 0.0)]
+    clouds = [cloud_of(scan_of(corridor(), pose, rng), cell) for pose in poses]
+    predicted = poses[2] + rng.uniform(-1.0, 1.0, 3) * (0.1, 0.05, 0.05)
+    covariance = np.diag(np.square([0.1, 0.05, 0.05]))
+    field = field_of(clouds[:2], poses[:2], cell)
+    match = match_scan(field, clouds[2], predicted, covariance, CONFIG)
+    assert not match.refused
+    # noisy walls are aslant by thousandths, so that a shift across moves a little along
+    assert abs(match.pose[0] - predicted[0]) < 1e-3
+    assert match.covariance[0, 0] >= covariance[0, 0] * (1.0 - 1e-3)
+    assert abs(match.pose[1] - poses[2][1]) < 0.2 * cell
+    assert abs(match.pose[2] - poses[2][2]) < 0.005
+    assert np.all(sigmas(match.covariance)[1:] < 0.2 * sigmas(covariance)[1:])
+
+
+@given(seed=SEEDS, cell=CELLS)
+@settings(max_examples=20)
+def test_in_the_middle_of_a_round_room_the_yaw_is_left_to_the_prediction(
+    seed: int, cell: float
+) -> None:
+    rng = np.random.default_rng(seed)
+    room = post(0.0, 0.0, 2.0, 720)
+    poses = [np.array([0.0, 0.0, rng.uniform(-3.0, 3.0)]) for _ in range(3)]
+    clouds = [cloud_of(scan_of(room, pose, rng), cell) for pose in poses]
+    predicted = poses[2] + rng.uniform(-0.08, 0.08, 3)
+    match = match_scan(field_of(clouds[:2], poses[:2], cell), clouds[2], predicted, UNSURE, CONFIG)
+    assert not match.refused
+    assert match.pose[2] == pytest.approx(predicted[2], abs=1e-9)
+    assert match.covariance[2, 2] >= UNSURE[2, 2] * (1.0 - 1e-9)
+    # the lidar, 3 cm behind the middle, swings with the yaw that is off by 0.08: 3 mm
+    assert np.hypot(*(match.pose - poses[2])[:2]) < 0.2 * cell + 0.003
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, 0.0, -np.inf])
+def test_a_scan_that_met_nothing_is_refused(value: float) -> None:
+    room = cloud_of(scan_of(random_room(np.random.default_rng(0)), np.zeros(3)))
+    field = field_of([room], [np.zeros(3)], COARSE_CELL)
+    empty = cloud_of(LaserScan(stamp=0.0, ranges=np.full(360, value, dtype=np.float32)))
+    _assert_refused(field, empty)
+
+
+def test_a_scan_that_nothing_in_the_map_explains_is_refused() -> None:
+    walls = random_room(np.random.default_rng(0))
+    cloud = cloud_of(scan_of(walls, np.zeros(3)))
+    _assert_refused(field_of([], [], COARSE_CELL), cloud)
+    # a map of something else: one short wall
+    other = replace(cloud, surface=cloud.surface[:20])
+    _assert_refused(field_of([other], [np.zeros(3)], COARSE_CELL), cloud)
+
+
+def _assert_refused(field: HitField, cloud: ScanCloud) -> None:
+    predicted = np.array([0.1, -0.2, 0.3])
+    match = match_scan(field, cloud, predicted, UNSURE, CONFIG)
+    assert match.refused
+    assert np.array_equal(match.pose, predicted)
+    assert np.array_equal(match.covariance, UNSURE)
+    assert 0.0 <= match.score < CONFIG.least_score
+
+
+@given(seed=SEEDS)
+@settings(max_examples=15)
+def test_a_match_turns_and_shifts_with_its_map(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    walls, cell = random_room(rng), FINE_CELL
+    turn = np.array([0.3, -0.2, rng.uniform(-np.pi, np.pi)])
+    clouds = [cloud_of(scan_of(walls, np.zeros(3), rng), cell) for _ in range(2)]
+    predicted = rng.uniform(-0.05, 0.05, 3)
+    here = match_scan(field_of(clouds[:1], [np.zeros(3)], cell), clouds[1], predicted, UNSURE, CONFIG)
+    moved = field_of(clouds[:1], [turn], cell)
+    there = match_scan(moved, clouds[1], compose(turn, predicted), UNSURE, CONFIG)
+    apart = between(compose(turn, here.pose), there.pose)
+    # cells lie elsewhere on the walls, and walls are shared out otherwise among the sides
+    assert np.hypot(*apart[:2]) < 0.1 * cell
+    assert abs(apart[2]) < 0.1 * cell / 1.5
+    assert there.score == pytest.approx(here.score, abs=0.02)
+
+
+def test_the_yaw_found_is_wrapped() -> None:
+    walls = random_room(np.random.default_rng(3))
+    pose = np.array([0.0, 0.0, np.pi - 0.01])
+    cloud = cloud_of(scan_of(walls, pose))
+    field = field_of([cloud], [pose], COARSE_CELL)
+    match = match_scan(field, cloud, pose + [0.0, 0.0, 0.03 - 2.0 * np.pi], UNSURE, CONFIG)
+    assert match.pose[2] == pytest.approx(pose[2], abs=1e-3)
+    assert -np.pi < match.pose[2] <= np.pi
+
+
+def test_what_the_scan_alone_asks_for_does_not_lean_on_the_prediction() -> None:
+    walls = random_room(np.random.default_rng(4))
+    cloud = cloud_of(scan_of(walls, np.zeros(3)))
+    field = field_of([cloud], [np.zeros(3)], COARSE_CELL)
+    sure = np.diag(np.square([1e-3, 1e-3, 5e-4]))
+    predicted = np.array([0.01, 0.0, 0.0])
+    match = match_scan(field, cloud, predicted, sure, CONFIG)
+    assert abs(match.seen[0]) < 1e-3
+    assert match.pose[0] > match.seen[0]
+
+
+@pytest.mark.parametrize("name", MatcherConfig.__slots__)
+@pytest.mark.parametrize("value", [0.0, -1.0, np.nan, np.inf])
+def test_settings_that_make_no_matcher_are_told_by_name(name: str, value: float) -> None:
+    with pytest.raises(TestbedError, match=name):
+        replace(CONFIG, **{name: value})
