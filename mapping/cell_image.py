@@ -37,10 +37,10 @@ class CellImage(AxesImage):
 
     def make_image(
         self, renderer: RendererBase, magnification: float = 1.0, unsampled: bool = False
-    ) -> tuple[NDArray[np.uint8], float, float, Affine2D | None]:
+    ) -> tuple[NDArray[np.uint8], float, float, Affine2D]:
         """The pixels ``(height, width, 4)`` of the axes, and their lower-left corner."""
         if magnification != 1.0 or unsampled:  # a file of lines, not of pixels
-            return super().make_image(renderer, magnification, unsampled)  # type: ignore[no-any-return]
+            return super().make_image(renderer, magnification, unsampled)
         assert self.axes is not None
         box, colours = self.axes.bbox, np.asarray(self.get_array())
         left, right, bottom, top = self.get_extent()
@@ -51,7 +51,7 @@ class CellImage(AxesImage):
         pixels = np.zeros((len(rows), len(columns), 4), dtype=np.uint8)
         pixels[..., :3] = colours[rows[:, None], columns]
         pixels[..., 3] = OPAQUE * (in_y[:, None] & in_x)
-        return pixels, first_x, first_y, None
+        return pixels, float(first_x), float(first_y), Affine2D()
 
 
 def _cells(

@@ -7,6 +7,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from mapping.slam.hit_field_kernels import newton_terms
+from mapping.slam.matrix_kernels import inverse3, product3, quadratic3, times3
 
 MOST_STEPS = 20
 """Steps after which climbing ends; ten are seldom needed."""
@@ -70,8 +71,8 @@ def climb(
     drop_flat(gradient, hessian, points, weights, total * matched, least)
     for _ in range(MOST_STEPS):
         offset = pose - prior
-        slope = gradient - information @ offset
-        step = np.linalg.solve(hessian + information, slope)
+        slope = gradient - times3(information, offset)
+        step = times3(inverse3(hessian + information), slope)
         length = max(math.hypot(step[0], step[1]), 0.5 * lever * abs(step[2]))
         if length > LONGEST_STEP:
             step *= LONGEST_STEP / length
@@ -145,9 +146,12 @@ def _drop(
     gradient: NDArray[np.float64], hessian: NDArray[np.float64], direction: NDArray[np.float64]
 ) -> None:
     """Take one direction out of a gradient and a Hessian, in place."""
-    keep = np.eye(3) - np.outer(direction, direction)
-    gradient[:] = keep @ gradient
-    hessian[:] = keep @ hessian @ keep
+    keep = np.eye(3)
+    for i in range(3):
+        for j in range(3):
+            keep[i, j] -= direction[i] * direction[j]
+    gradient[:] = times3(keep, gradient)
+    hessian[:] = product3(product3(keep, hessian), keep)
 
 
 @njit(cache=True)
@@ -155,5 +159,4 @@ def _cost(
     pose: NDArray[np.float64], prior: NDArray[np.float64], information: NDArray[np.float64]
 ) -> float:
     """Half the squared Mahalanobis distance from the prior."""
-    offset = pose - prior
-    return 0.5 * float(offset @ information @ offset)
+    return float(0.5 * quadratic3(pose - prior, information))

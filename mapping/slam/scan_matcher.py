@@ -16,7 +16,9 @@ from mapping.errors import TestbedError
 from mapping.geometry import Pose, wrap_to_pi
 from mapping.slam.climb_kernels import climb
 from mapping.slam.correlative_search import search_window
+from mapping.slam.fuse_kernel import fuse, scan_information
 from mapping.slam.hit_field import HitField
+from mapping.slam.matrix_kernels import inverse3
 from mapping.slam.scan_cloud import ScanCloud
 
 LEEWAY = np.diag(np.square([0.05, 0.05, 0.05]))
@@ -26,15 +28,12 @@ prediction that is too sure of itself would never be found out."""
 SHARPEST = np.diag(np.square([0.002, 0.002, 0.001]))
 """No scan says better than this where it was taken [m^2, m^2, rad^2]."""
 
-FLAT = 1e-6
-"""A curvature smaller than this share of the largest is none, or one that was taken out."""
-
 SURPRISING = 11.3
 """A scan this far from the prediction, in squared standard deviations, was predicted wrongly: one
 in a hundred lies farther out (chi-square, three degrees of freedom)."""
 
-NOTHING_TOLD = np.eye(3)
-"""Information [1/m^2, 1/m^2, 1/rad^2] of a scan that tells nothing."""
+NOTHING_TOLD = 1.0
+"""Information along each axis [1/m^2, 1/m^2, 1/rad^2] of a scan that tells nothing."""
 
 ANYWHERE = np.eye(3)
 """The covariance that goes with it."""
@@ -127,7 +126,7 @@ def match_scan(
         field.density,
         start,
         prior,
-        np.linalg.inv(covariance + LEEWAY) * np.outer(scale, scale),
+        inverse3(covariance + LEEWAY) * np.outer(scale, scale),
         points,
         cloud.normals,
         cloud.weights,
@@ -138,13 +137,14 @@ def match_scan(
         return replace(refused, score=score)
     seen = field.to_metres(pose)
     per_metre = np.outer(1.0 / scale, 1.0 / scale)
-    told = _information(curvature * per_metre, scatter * per_metre * config.togetherness)
+    told = scan_information(
+        curvature * per_metre, scatter * per_metre * config.togetherness, SHARPEST
+    )
     offset = seen - predicted
     offset[2] = wrap_to_pi(offset[2])
-    seen_covariance = _inverse(told + NOTHING_TOLD)
-    surprise = offset @ np.linalg.solve(covariance + seen_covariance, offset) / SURPRISING
-    fused = _inverse(told + _inverse(covariance * max(surprise, 1.0)))
-    found = predicted + fused @ told @ offset
+    found, fused, seen_covariance = fuse(
+        predicted, covariance, offset, told, NOTHING_TOLD, SURPRISING
+    )
     found[2] = wrap_to_pi(found[2])
     return Match(
         pose=found,
@@ -154,26 +154,6 @@ def match_scan(
         seen=predicted + offset,
         seen_covariance=seen_covariance,
     )
-
-
-def _information(
-    curvature: NDArray[np.float64], scatter: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """The information of a scan: the inverse of its sandwich covariance (Huber 1967).
-
-    The bells of the field are wider than the readings' noise, so the curvature alone says too
-    little; how far the readings really lie from the bells' middles is in their slopes. Directions
-    without curvature have no information.
-    """
-    values, directions = np.linalg.eigh(curvature)
-    told = directions[:, values > FLAT * values[-1]]
-    softness = np.linalg.inv(told.T @ curvature @ told)
-    covariance = softness @ (told.T @ scatter @ told) @ softness + told.T @ SHARPEST @ told
-    return np.asarray(told @ np.linalg.inv(covariance) @ told.T)
-
-
-def _inverse(matrix: NDArray[np.float64]) -> NDArray[np.float64]:
-    return np.asarray(np.linalg.inv(matrix), dtype=np.float64)
 
 
 def _uncertainty(
