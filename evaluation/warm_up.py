@@ -1,18 +1,17 @@
-"""Compiles the numba kernels by a tiny episode, so that no measured loop pays for it."""
+"""Compiles the numba kernels that a run needs, so that no measured loop pays for it."""
 
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from envs.floor_plan import Cylinder, FloorPlan, Wall
+from evaluation.kernel_cache import is_compiled, note_kernels
 from mapping.burger import LIDAR_BEAMS
 from mapping.geometry import Pose, wrap_to_pi
 from mapping.messages import LaserScan, Odometry, Twist
 from mapping.sensor_log import SensorLog
 
-PACKAGES = ("mapping", "nav", "envs")
 TINY_ROOM = FloorPlan(
     name="tiny_room",
     start=(0.5, 0.5, 0.0),
@@ -30,48 +29,37 @@ ROOM = np.array([3.2, 2.8])
 """Half the sides of that room [m]."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class KernelCache:
-    """Which kernel files have compiled code beside them."""
+def is_warm(mapper: str, *, simulates: bool) -> bool:
+    """Whether all that runs with a mapper need is compiled.
 
-    compiled: int
-    total: int
-
-    @property
-    def is_cold(self) -> bool:
-        """Whether something must be compiled before the first run."""
-        return self.compiled < self.total
-
-
-def kernel_cache() -> KernelCache:
-    """Count the kernel files and those whose compiled code is newer than they are."""
-    root = Path(__file__).resolve().parents[1]
-    sources = [
-        source
-        for package in PACKAGES
-        for source in (root / package).rglob("*.py")
-        if "@njit" in source.read_text(encoding="utf-8")
-    ]
-    compiled = sum(_is_compiled(source) for source in sources)
-    return KernelCache(compiled=compiled, total=len(sources))
-
-
-def compile_kernels() -> None:
-    """Run a tiny episode with each mapper; numba keeps what it compiles for the next process.
-
-    No simulated robot goes far between two scans. So that mappers also search for the robot, and
-    for places where it was before, each maps a log in which one does.
+    Args:
+        mapper: Its name, one of MAPPERS.
+        simulates: Whether an episode is run, or else a log mapped.
     """
-    from evaluation.episode import EpisodeConfig, run_episode
+    return is_compiled(_kind(mapper, simulates))
+
+
+def compile_kernels(mapper: str, *, simulates: bool) -> None:
+    """Map with a mapper what takes no time; numba keeps what it compiles for the next process.
+
+    That is a tiny episode, if one is to be run. No simulated robot goes far between two scans. So
+    that mappers also search for the robot, and for places where it was before, a log follows in
+    which one does.
+    """
     from evaluation.recording import Recording
     from evaluation.replay import ReplayConfig, run_replay
-    from mapping.mappers import MAPPERS
 
+    if simulates:
+        from evaluation.episode import EpisodeConfig, run_episode
+
+        run_episode(EpisodeConfig(mapper=mapper, time_limit=20.0), plan=TINY_ROOM)
     recording = Recording(log=sparse_log())
-    for mapper in MAPPERS:
-        config = EpisodeConfig(mapper=mapper, odometry="truth", time_limit=20.0)
-        run_episode(config, plan=TINY_ROOM)
-        run_replay(ReplayConfig(log=Path(recording.log.source), mapper=mapper), recording)
+    run_replay(ReplayConfig(log=Path(recording.log.source), mapper=mapper), recording)
+    note_kernels(_kind(mapper, simulates))
+
+
+def _kind(mapper: str, simulates: bool) -> str:
+    return f"{mapper}-{'episode' if simulates else 'replay'}"
 
 
 def sparse_log() -> SensorLog:
@@ -100,9 +88,3 @@ def _room_around(pose: Pose) -> NDArray[np.float32]:
     with np.errstate(divide="ignore"):
         to_walls = (np.copysign(ROOM, rays) - pose[:2]) / rays
     return np.asarray(to_walls.min(axis=1).astype(np.float32))
-
-
-def _is_compiled(source: Path) -> bool:
-    changed = source.stat().st_mtime
-    indices = (source.parent / "__pycache__").glob(f"{source.stem}.*.nbi")
-    return any(index.stat().st_mtime >= changed for index in indices)

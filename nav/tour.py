@@ -88,25 +88,35 @@ def _improve(
                 trial = _moved(order, i, j)
                 cost = latency(trial, first_legs, legs, weights)
                 if i < j:
-                    reversed_ = order.copy()
-                    reversed_[i : j + 1] = order[i : j + 1][::-1]
+                    reversed_ = _reversed(order, i, j)
                     other = latency(reversed_, first_legs, legs, weights)
                     if other < cost:
                         trial, cost = reversed_, other
                 if cost < best * (1.0 - ROUNDING):
-                    order[:] = trial
+                    for k in range(count):
+                        order[k] = trial[k]
                     best = cost
                     improved = True
 
 
 @njit(cache=True)
 def _moved(order: NDArray[np.int64], i: int, j: int) -> NDArray[np.int64]:
-    """The order with its ``i``-th place taken out and put back as the ``j``-th."""
+    """The order with its ``i``-th place taken out and put back as the ``j``-th.
+
+    Element by element: numba takes two seconds to compile copies from slice to slice.
+    """
     moved = order.copy()
-    place = order[i]
-    if i < j:
-        moved[i:j] = order[i + 1 : j + 1]
-    else:
-        moved[j + 1 : i + 1] = order[j:i]
-    moved[j] = place
+    step = 1 if i < j else -1
+    for k in range(i, j, step):
+        moved[k] = order[k + step]
+    moved[j] = order[i]
     return moved
+
+
+@njit(cache=True)
+def _reversed(order: NDArray[np.int64], i: int, j: int) -> NDArray[np.int64]:
+    """The order with the stretch from its ``i``-th to its ``j``-th place turned round."""
+    turned = order.copy()
+    for k in range(i, j + 1):
+        turned[k] = order[i + j - k]
+    return turned

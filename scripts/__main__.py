@@ -1,11 +1,13 @@
 """The ``burger`` command: finds the verb, runs it, turns bad input into one line and status 2."""
 
+import os
 import sys
 from importlib import import_module
 
 VERBS = {
     "explore": "one autonomous episode: drive, map, score, write a run folder",
     "replay": "map a recorded log, score what can be scored, write a run folder",
+    "optimize": "the poses of a g2o file that agree best with its measurements",
     "compare": "score a map file against a floor plan or another map",
     "world": "list, show and convert floor plans",
     "bench": "how fast each stage and the whole loop run on this machine",
@@ -14,10 +16,25 @@ VERBS = {
 
 BAD_INPUT = 2
 
+READER_GONE = 141
+"""What shells tell of a program that wrote to a pipe which nobody reads (128 + SIGPIPE)."""
+
 
 def main() -> None:
-    """Run the command line of this process and exit with its status."""
-    sys.exit(run(sys.argv[1:]))
+    """Run the command line of this process and exit with its status.
+
+    ``burger ... | head`` ends without a word when head has seen enough.
+    """
+    try:
+        try:
+            status = run(sys.argv[1:])
+        finally:
+            sys.stdout.flush()
+    except BrokenPipeError:
+        status = READER_GONE
+        # what is left in the buffer goes nowhere, or Python would complain about it at exit
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    sys.exit(status)
 
 
 def run(arguments: list[str]) -> int:

@@ -33,7 +33,7 @@ def run(arguments: list[str]) -> int:
     out = options.out or Path("runs") / _folder_name(config)
     recorder = Recorder() if options.record else None
     with run_folder(out):
-        compile_if_needed()
+        compile_if_needed(config.mapper, simulates=True)
         result = write_run(_watch(config, recorder), out)
     print(summary(result))
     recorded = ", log.carmen, bag" if options.record else ""

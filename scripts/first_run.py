@@ -2,17 +2,23 @@
 
 import sys
 
-from evaluation.warm_up import compile_kernels, kernel_cache
+from evaluation.warm_up import compile_kernels, is_warm
+from mapping.mappers import MAPPERS
 
 
-def compile_if_needed() -> None:
-    """Compile the kernels now if they are not, saying so on stderr."""
-    cache = kernel_cache()
-    if cache.is_cold:
-        missing = cache.total - cache.compiled
+def compile_if_needed(mapper: str, *, simulates: bool) -> None:
+    """Compile what runs with a mapper need now if it is not, saying so on stderr.
+
+    Args:
+        mapper: Its name; nothing is done for one that there is not, which the run will tell.
+        simulates: Whether an episode is run, or else a log mapped.
+    """
+    if mapper not in MAPPERS:
+        return
+    if not is_warm(mapper, simulates=simulates):
         print(
-            f"compiling {missing} of {cache.total} kernel files, once: about a minute ...",
+            f"compiling the kernels of mapper {mapper}, once: up to a minute ...",
             file=sys.stderr,
             flush=True,
         )
-        compile_kernels()
+        compile_kernels(mapper, simulates=simulates)

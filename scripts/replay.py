@@ -78,7 +78,7 @@ def _shown(value: float | None) -> str:
 def _watch(config: ReplayConfig) -> Replay:
     """Map the log, a bar growing before the user's eyes if there is a terminal."""
     recording = load_recording(config.log, config.relations)
-    compile_if_needed()
+    compile_if_needed(config.mapper, simulates=False)
     with tqdm(
         total=len(recording.log.scans), unit="scan", disable=not is_terminal(), leave=False
     ) as bar:

@@ -9,6 +9,10 @@ from mapping.slam.matrix_kernels import inverse3, product3, quadratic3, times3
 RIDGE = 1e-9
 """Added to the scatter, relative to its largest element, so that it has an inverse."""
 
+LEAST_SCATTER = 0.1
+"""Slopes scatter at least by this share of the curvature, as readings do whose noise is a third of
+the bells' width: a handful that happens to fit says no more than that."""
+
 
 @njit(cache=True)
 def scan_information(
@@ -28,14 +32,14 @@ def scan_information(
         sharpest: Covariance that is added, below which no scan is believed ``(3, 3)``; diagonal.
     """
     largest = max(scatter[0, 0], max(scatter[1, 1], scatter[2, 2]))
-    ridged = scatter + RIDGE * largest * np.eye(3)
-    told = product3(product3(curvature, inverse3(ridged)), curvature)
+    ridged = scatter + LEAST_SCATTER * curvature + RIDGE * largest * np.eye(3)
+    told: NDArray[np.float64] = product3(product3(curvature, inverse3(ridged)), curvature)
     # (told^-1 + sharpest)^-1, also when told has no inverse (Woodbury)
     widened = told.copy()
     for i in range(3):
         widened[i, i] += 1.0 / sharpest[i, i]
-    told -= product3(product3(told, inverse3(widened)), told)
-    return told
+    lost: NDArray[np.float64] = product3(product3(told, inverse3(widened)), told)
+    return told - lost
 
 
 @njit(cache=True)
@@ -46,7 +50,7 @@ def fuse(
     told: NDArray[np.float64],
     nothing: float,
     surprising: float,
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], float]:
     """The pose between a prediction and a scan, as a Kalman filter has it.
 
     A prediction that the scan contradicts is taken to be as much less sure as it takes.
@@ -60,9 +64,10 @@ def fuse(
         surprising: Squared standard deviations beyond which the prediction is contradicted.
 
     Returns:
-        The pose ``(3,)``, its covariance, and the covariance of what the scan says.
+        The pose ``(3,)``, its covariance, the covariance of what the scan says, and how far the
+        two contradict one another, 1 where that begins to be surprising.
     """
     seen = inverse3(told + nothing * np.eye(3))
     surprise = quadratic3(offset, inverse3(covariance + seen)) / surprising
     fused = inverse3(told + inverse3(covariance * max(surprise, 1.0)))
-    return predicted + times3(fused, times3(told, offset)), fused, seen
+    return predicted + times3(fused, times3(told, offset)), fused, seen, surprise

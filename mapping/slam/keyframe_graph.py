@@ -52,7 +52,8 @@ class KeyframeGraph:
         self._lengths = np.empty(FIRST_ROOM)
         self._views, self._views_state = np.zeros((0, 2)), (0, 0)
         self._ways: dict[int, tuple[NDArray[np.float64], NDArray[np.int32]]] = {}
-        self._variances: dict[tuple[int, int], tuple[float, float]] = {}
+        self._pairs: dict[tuple[int, int], int] = {}
+        self._information = np.empty((FIRST_ROOM, 2))
         self.corrections = 0
         """How often the poses were changed after the fact."""
 
@@ -88,20 +89,24 @@ class KeyframeGraph:
         return number
 
     def connect(self, edge: Edge) -> None:
-        """Add an edge between keyframes that there are."""
-        number = len(self.edges)
+        """Add an edge between keyframes that there are; several may join the same two."""
         self._ways.clear()
-        self._ends, self._lengths = _grown(self._ends, number), _grown(self._lengths, number)
-        self._ends[number] = edge.a, edge.b
+        self.edges.append(edge)
         dx, dy, turn = edge.pose
-        self._lengths[number] = STEP_LENGTH + np.hypot(dx, dy) + TURN_LENGTH * abs(turn)
-        variances = (
-            float(max(edge.covariance[0, 0], edge.covariance[1, 1])),
-            float(edge.covariance[2, 2]),
+        length = STEP_LENGTH + np.hypot(dx, dy) + TURN_LENGTH * abs(turn)
+        information = 1.0 / np.array(
+            [max(edge.covariance[0, 0], edge.covariance[1, 1]), edge.covariance[2, 2]]
         )
         pair = (min(edge.a, edge.b), max(edge.a, edge.b))
-        self._variances[pair] = min(variances, self._variances.get(pair, variances))
-        self.edges.append(edge)
+        if pair in self._pairs:
+            row = self._pairs[pair]
+            self._lengths[row] = min(self._lengths[row], length)
+            self._information[row] += information
+            return
+        row = self._pairs[pair] = len(self._pairs)
+        self._ends, self._lengths = _grown(self._ends, row), _grown(self._lengths, row)
+        self._information = _grown(self._information, row)
+        self._ends[row], self._lengths[row], self._information[row] = pair, length, information
 
     def correct(self, poses: Pose) -> None:
         """Take better poses ``(n, 3)`` of all keyframes."""
@@ -122,10 +127,10 @@ class KeyframeGraph:
         return np.where(distances <= limit, distances, np.inf), before
 
     def _measured_ways(self, keyframe: int) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-        count, edges = len(self.clouds), len(self.edges)
-        a, b = self._ends[:edges].T
+        count, pairs = len(self.clouds), len(self._pairs)
+        a, b = self._ends[:pairs].T
         ends = np.concatenate((a, b)), np.concatenate((b, a))
-        lengths = np.tile(self._lengths[:edges], 2)
+        lengths = np.tile(self._lengths[:pairs], 2)
         graph = csr_matrix((lengths, ends), shape=(count, count))
         distances, before = dijkstra(graph, indices=[keyframe], return_predecessors=True)
         return distances[0], before[0]
@@ -146,9 +151,8 @@ class KeyframeGraph:
         chain = [other]
         while chain[-1] != keyframe and before[chain[-1]] >= 0:
             chain.append(int(before[chain[-1]]))
-        pairs = pairwise(chain)
-        variances = np.array([self._variances[min(a, b), max(a, b)] for a, b in pairs])
-        variances = variances.reshape(-1, 2)
+        rows = [self._pairs[min(a, b), max(a, b)] for a, b in pairwise(chain)]
+        variances = 1.0 / self._information[rows].reshape(-1, 2)
         arms = self.poses[chain[1:], :2] - self.poses[keyframe, :2]
         place = variances[:, 0].sum() + (variances[:, 1] * (arms**2).sum(axis=1)).sum()
         return float(place), float(variances[:, 1].sum())

@@ -27,6 +27,9 @@ from mapping.slam.sweep import Sweep, make_sweep
 EDGE_FLOOR = np.diag(np.square([0.01, 0.01, 0.004]))
 """No keyframe is surer of its place among the others, whose errors it shares [m^2, m^2, rad^2]."""
 
+RECKONED_FLOOR = np.diag(np.square([0.005, 0.005, 5e-4]))
+"""Nor is a motion that was reckoned [m^2, m^2, rad^2]."""
+
 OLD = 20
 """A keyframe with so many after it is an old one."""
 
@@ -149,15 +152,27 @@ class ScanMatch:
 
     def _add_keyframe(self, cloud: ScanCloud) -> int:
         """Make the newest scan a keyframe, tied to those that it was matched with."""
-        graph = self.graph
-        ties = self._ties(view_of(self._tracker.pose, cloud)) if len(graph) else []
-        number = graph.add(self._tracker.pose, cloud)
+        graph, pose = self.graph, self._tracker.pose
+        ties = self._ties(view_of(pose, cloud)) if len(graph) else []
+        number = graph.add(pose, cloud)
+        covariance = (self._tracker.covariance + EDGE_FLOOR) * max(len(ties), 1)
         for other in ties:
-            covariance = (self._tracker.covariance + EDGE_FLOOR) * len(ties)
-            graph.connect(
-                edge_between(other, number, graph.poses[other], self._tracker.pose, covariance)
-            )
+            graph.connect(edge_between(other, number, graph.poses[other], pose, covariance))
+        if number > 0:
+            self._connect_reckoned(number)
         return number
+
+    def _connect_reckoned(self, number: int) -> None:
+        """Tie a keyframe to the one before it by odometry and gyroscope alone.
+
+        They know nothing of walls, and the gyroscope's heading hardly drifts: no chain of matches
+        and no false loop turns the map against it.
+        """
+        tracker = self._tracker
+        covariance = tracker.reckoned_covariance + RECKONED_FLOOR
+        edge = edge_between(number - 1, number, np.zeros(3), tracker.reckoned, covariance)
+        self.graph.connect(edge)
+        tracker.forget_reckoned()
 
     def _ties(self, view: NDArray[np.float64]) -> list[int]:
         """The keyframes that a new one is tied to: newest, nearest, and nearest of the old ones."""

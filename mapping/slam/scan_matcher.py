@@ -21,9 +21,9 @@ from mapping.slam.hit_field import HitField
 from mapping.slam.matrix_kernels import inverse3
 from mapping.slam.scan_cloud import ScanCloud
 
-LEEWAY = np.diag(np.square([0.05, 0.05, 0.05]))
-"""What the prediction may err more than it says [m^2, m^2, rad^2] while a scan is heard: else a
-prediction that is too sure of itself would never be found out."""
+LEEWAY, LEEWAY_SIGMAS = np.diag(np.square([0.03, 0.03, 0.01])), 3.0
+"""What the prediction may err more than it says [m^2, m^2, rad^2] while a scan is heard, and how
+many times as much as it says: else one that is too sure of itself would never be found out."""
 
 SHARPEST = np.diag(np.square([0.002, 0.002, 0.001]))
 """No scan says better than this where it was taken [m^2, m^2, rad^2]."""
@@ -50,8 +50,12 @@ class MatcherConfig:
     stands across gives about 0.5 for each reading on it."""
     least_score: float = 0.35
     """A match that explains a smaller share of the scan is refused."""
-    least_points: int = 10
+    least_points: int = 20
     """A scan with fewer points is refused: a wall or two could lie anywhere."""
+    sure_score: float = 0.6
+    """A scan that contradicts the prediction is believed if it explains this share of itself."""
+    sure_points: int = 60
+    """And has so many points."""
     sharp_start: float = 1.0
     """A prediction this sure [cells, one standard deviation at the end of a typical beam] needs no
     search."""
@@ -126,7 +130,7 @@ def match_scan(
         field.density,
         start,
         prior,
-        inverse3(covariance + LEEWAY) * np.outer(scale, scale),
+        inverse3(LEEWAY_SIGMAS**2 * covariance + LEEWAY) * np.outer(scale, scale),
         points,
         cloud.normals,
         cloud.weights,
@@ -142,9 +146,12 @@ def match_scan(
     )
     offset = seen - predicted
     offset[2] = wrap_to_pi(offset[2])
-    found, fused, seen_covariance = fuse(
+    found, fused, seen_covariance, surprise = fuse(
         predicted, covariance, offset, told, NOTHING_TOLD, SURPRISING
     )
+    is_sure = score >= config.sure_score and len(cloud) >= config.sure_points
+    if surprise > 1.0 and not is_sure:
+        return replace(refused, score=score)
     found[2] = wrap_to_pi(found[2])
     return Match(
         pose=found,

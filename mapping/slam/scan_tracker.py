@@ -41,6 +41,10 @@ class ScanTracker:
         """Pose of the newest scan ``(3,)``; the start pose before the first."""
         self.covariance = START_COVARIANCE
         """How sure that is among the keyframes around ``(3, 3)``."""
+        self.reckoned = np.zeros(3)
+        """The motion ``(3,)`` since the last keyframe, by odometry and gyroscope alone."""
+        self.reckoned_covariance = np.zeros((3, 3))
+        """How sure that is ``(3, 3)``, in the frame of the keyframe."""
         self.local = LocalMap(graph, config.local_map(way))
         self._matcher = config.matcher
         self._track = FusedTrack(config.fusion)
@@ -75,8 +79,10 @@ class ScanTracker:
             return 1.0
         spread, self._scan_odom = self._track.motion_covariance(), pose_odom
         self._track.mark()
-        predicted = compose(self.pose, self._calibration.corrected(motion))
+        corrected = self._calibration.corrected(motion)
+        predicted = compose(self.pose, corrected)
         spread = self._calibration.widened(motion, spread, has_gyro=self._has_gyro)
+        self._reckon(corrected, spread)
         covariance = _carried(self.covariance, self.pose, predicted, spread)
         self.local.follow(near, view_of(predicted, cloud))
         match = match_scan(self.local.field, cloud, predicted, covariance, self._matcher)
@@ -85,6 +91,17 @@ class ScanTracker:
             self._calibration.learn(motion, between(self.pose, match.seen), noise)
         self.pose, self.covariance = match.pose, match.covariance
         return match.score
+
+    def forget_reckoned(self) -> None:
+        """Count the reckoned motion from the newest scan on: it became a keyframe."""
+        self.reckoned, self.reckoned_covariance = np.zeros(3), np.zeros((3, 3))
+
+    def _reckon(self, motion: Pose, spread: NDArray[np.float64]) -> None:
+        moved = compose(self.reckoned, motion)
+        self.reckoned_covariance = _carried(
+            self.reckoned_covariance, self.reckoned, moved, spread
+        )
+        self.reckoned = moved
 
     def motion_since_scan(self) -> Pose | None:
         """The motion since the newest scan ``(3,)``, from the start if there was none.

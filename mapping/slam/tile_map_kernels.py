@@ -115,13 +115,24 @@ def own_tiles(
                 continue
             free_count -= 1
             new = free_tiles[free_count]
-            hits[new], visits[new] = hits[old], visits[old]  # tile 0 is empty
-            means[new], full[new] = means[old], full[old]
+            _copy_tile(old, new, hits, visits, means, full)  # tile 0 is empty
             if old != 0:
                 references[old] -= 1
             references[new] = 1
             table[row, column] = new
     return free_count
+
+
+@njit(cache=True)
+def _copy_tile(old: int, new: int, hits: Counts, visits: Counts, means: Means, full: Words) -> None:
+    """Copy a tile of the pool, cell by cell: numba takes seconds to compile copies of slices."""
+    for row in range(TILE_CELLS):
+        full[new, row] = full[old, row]
+        for column in range(TILE_CELLS):
+            hits[new, row, column] = hits[old, row, column]
+            visits[new, row, column] = visits[old, row, column]
+            means[new, row, column, 0] = means[old, row, column, 0]
+            means[new, row, column, 1] = means[old, row, column, 1]
 
 
 @njit(cache=True)

@@ -1,0 +1,62 @@
+"""Remembers which kernels a kind of run needs, and tells whether all are compiled, ready on disk.
+
+What a run needs shows when it is over: the kernels that were called. They are noted beside numba's
+compiled code, so that a note is gone when that is.
+"""
+
+import json
+import sys
+from pathlib import Path
+
+from numba.core.dispatcher import Dispatcher
+
+from mapping.deskew_kernels import interpolate
+from mapping.io.atomic import write_atomically
+
+PACKAGES = ("mapping", "nav", "envs")
+
+
+def is_compiled(kind: str) -> bool:
+    """Whether a kind of run was noted, and its kernels were compiled since their files changed.
+
+    True as well when numba's compiler is switched off: there is nothing to compile.
+    """
+    note = _note_of(kind)
+    if note is None:
+        return True
+    try:
+        files = json.loads(note.read_text(encoding="utf-8"))
+        return all(_is_compiled(Path(source), Path(folder)) for source, folder in files.items())
+    except (OSError, ValueError):
+        return False
+
+
+def note_kernels(kind: str) -> None:
+    """Note the kernels that were called in this process as those that a kind of run needs."""
+    note = _note_of(kind)
+    if note is not None:
+        text = json.dumps(called_kernels(), indent=0)
+        write_atomically(note, lambda file: file.write(text.encode()))
+
+
+def called_kernels() -> dict[str, str]:
+    """Source files of kernels called in this process, each with the folder of its compiled code."""
+    modules = [module for name, module in sys.modules.items() if name.split(".")[0] in PACKAGES]
+    return {
+        kernel.py_func.__code__.co_filename: kernel.stats.cache_path
+        for module in modules
+        for kernel in vars(module).values()
+        if isinstance(kernel, Dispatcher) and kernel.signatures
+    }
+
+
+def _note_of(kind: str) -> Path | None:
+    """The file of a note, where numba keeps the code of a kernel that every run calls."""
+    if not isinstance(interpolate, Dispatcher):
+        return None
+    return Path(interpolate.stats.cache_path) / f"kernels-of-{kind}.json"
+
+
+def _is_compiled(source: Path, folder: Path) -> bool:
+    changed = source.stat().st_mtime
+    return any(index.stat().st_mtime >= changed for index in folder.glob(f"{source.stem}.*.nbi"))
