@@ -61,7 +61,9 @@ def match_particles(
             matched[p, 0], matched[p, 1], matched[p, 2] = x, y, yaw
         turn(matched[p, 2], points, turned)
         x, y = matched[p, 0], matched[p, 1]
-        fits[p] = fit(x, y, turned, kernel, sharpness, -1.0, bits, tables[p], means)
+        fits[p, 0], fits[p, 1], fits[p, 2] = fit(
+            x, y, turned, kernel, sharpness, -1.0, bits, tables[p], means
+        )
     return matched, fits
 
 

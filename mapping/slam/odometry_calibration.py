@@ -10,6 +10,9 @@ from mapping.geometry import Pose, wrap_to_pi
 SMALLEST = np.diag(np.square([5e-4, 5e-4, 2e-4]))
 """No motion is surer than this [m^2, m^2, rad^2]: scans come at odd times between messages."""
 
+SMALLEST_WITH_GYRO = np.diag(np.square([5e-4, 5e-4, 2e-5]))
+"""Nor one whose turn comes from a gyroscope, which hears of it a hundred times a second."""
+
 LARGEST_SURPRISE = 9.0
 """A surprise beyond three standard deviations counts as one of three."""
 
@@ -64,6 +67,17 @@ class OdometryCalibration:
         """How many times larger the variances are than the motion model says."""
         self.covariance = self._prior.copy()
 
+    def trust_heading(self) -> None:
+        """Learn of scale and offset only from now on: the turns come from a gyroscope.
+
+        A few bad matches must not teach that a heading which hardly drifts does.
+        """
+        heading = [1, 2]
+        self.errors[heading] = 0.0
+        for covariance in (self.covariance, self._prior):
+            covariance[heading, :] = 0.0
+            covariance[:, heading] = 0.0
+
     def corrected(self, motion: ArrayLike) -> Pose:
         """A motion ``(3,)`` of the odometry, without the errors learned so far."""
         motion = np.asarray(motion, dtype=np.float64)
@@ -98,11 +112,11 @@ class OdometryCalibration:
         way, angle = float(np.hypot(motion[0], motion[1])), abs(float(motion[2]))
         place = way + self.config.turn_arm * angle
         least = self.config.least_share * np.array([place, place, angle + way])
+        smallest = SMALLEST
         if has_gyro:
-            least[2] = 0.0
-            noise[2] = 1.0
+            least[2], noise[2], smallest = 0.0, 1.0, SMALLEST_WITH_GYRO
         wide = noise * (np.array([ahead, max(ahead, aside), turn]) + least**2)
-        return np.asarray(np.diag(wide) + SMALLEST, dtype=np.float64)
+        return np.asarray(np.diag(wide) + smallest, dtype=np.float64)
 
     def learn(self, motion: Pose, matched: Pose, covariance: NDArray[np.float64]) -> None:
         """Compare a motion of the odometry with the same motion as matching gave it.

@@ -55,7 +55,9 @@ class ScanTracker:
     def add(self, odometry: Sequence[Odometry], imu: Sequence[Imu]) -> None:
         """Take the messages of one control period."""
         self._track.add(odometry, imu)
-        self._has_gyro = self._has_gyro or len(imu) > 0
+        if not self._has_gyro and len(imu) > 0:
+            self._has_gyro = True
+            self._calibration.trust_heading()
 
     def poses_at(self, stamps: ArrayLike) -> Pose | None:
         """Poses ``(n, 3)`` of the odometry at moments ``(n,)`` [s], None when it does not say."""

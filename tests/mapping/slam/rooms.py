@@ -87,6 +87,19 @@ def ring() -> Walls:
     )
 
 
+def long_ring() -> Walls:
+    """A bare corridor 1.2 m wide around a block of 9.6 x 3.6 m, with one pillar.
+
+    In its long sides a lidar that sees 3.5 m far finds nothing to tell how far it has come.
+    """
+    return np.concatenate(
+        (box(-6.0, 6.0, -3.0, 3.0), box(-4.8, 4.8, -1.8, 1.8), post(-5.7, 0.4, 0.12))
+    )
+
+
+LONG_RING_WAY = [(-5.4, -2.4), (5.4, -2.4), (5.4, 2.4), (-5.4, 2.4), (-5.4, -2.4)]
+"""Once around the long ring."""
+
 RING_WAY = [(-2.9, -1.9), (2.9, -1.9), (2.9, 1.9), (-2.9, 1.9), (-2.9, -1.9)]
 """Once around the ring, in the middle of its corridor."""
 
@@ -184,6 +197,7 @@ def drive(
     scale: float = 0.0,
     drift: float = 0.0,
     noise: float = 0.02,
+    rolls: bool = True,
 ) -> Run:
     """Drive from point to point with a noisy lidar and odometry that errs.
 
@@ -194,6 +208,7 @@ def drive(
         scale: Relative error of the odometry's way.
         drift: Its turn in each metre of way [rad/m].
         noise: Random relative error of the speeds in each tick.
+        rolls: Whether beams are shot one after the other; else all at once.
     """
     start, speeds = along(way)
     told = speeds * (1.0 + rng.normal(0.0, noise, speeds.shape))
@@ -205,6 +220,8 @@ def drive(
     for first in firsts:
         ticks = np.arange(first, first + TICKS_A_SCAN + 1)
         scan = LaserScan(stamp=first * TICK, ranges=np.zeros(360, dtype=np.float32))
+        if not rolls:
+            scan = replace(scan, time_increment=0.0)
         poses = [np.interp(scan.beam_stamps, ticks * TICK, true[ticks, k]) for k in range(3)]
         scan = scan_of(walls, compose(start, np.column_stack(poses)), rng, scan)
         messages = [message(k, odometry[k], told[k]) for k in (ticks if first == 0 else ticks[1:])]
