@@ -9,6 +9,8 @@ from tqdm import tqdm
 
 from evaluation.bench import BENCH_WORLDS, Loop, Stage, bench_loop, bench_stages
 from evaluation.run_folder import write_json
+from mapping.errors import TestbedError
+from mapping.mappers import MAPPERS
 from scripts.arguments import is_terminal, parse
 from scripts.first_run import compile_if_needed
 
@@ -17,6 +19,8 @@ from scripts.first_run import compile_if_needed
 class Bench:
     """Time the stages and whole explorations; one core is enough."""
 
+    mapper: str = "graph"
+    """Mapper of the explorations."""
     worlds: tuple[str, ...] = BENCH_WORLDS
     """Worlds to explore whole."""
     seed: int = 0
@@ -28,19 +32,22 @@ class Bench:
 def run(arguments: list[str]) -> int:
     """Run the verb."""
     options = parse(Bench, "bench", arguments)
-    compile_if_needed()
+    if options.mapper not in MAPPERS:
+        raise TestbedError(f"mapper: {options.mapper!r}; must be one of {', '.join(MAPPERS)}")
+    for mapper in MAPPERS:
+        compile_if_needed(mapper, simulates=True)
     print(f"{platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}")
     stages = bench_stages()
     print(f"\n{'stage':<50} {'median ms':>10} {'p99 ms':>8}")
     for stage in stages:
         print(_stage_row(stage))
     print(
-        f"\n{'whole loop':<20} {'simulated s':>12} {'x real time':>12}"
+        f"\n{'whole loop, ' + options.mapper:<23} {'simulated s':>12} {'x real time':>12}"
         f" {'simulation':>11} {'mapping':>8} {'navigation':>11}   ms per simulated s"
     )
     loops = []
     for world in tqdm(options.worlds, disable=not is_terminal(), leave=False):
-        loops.append(bench_loop(world, options.seed))
+        loops.append(bench_loop(world, options.seed, options.mapper))
         tqdm.write(_loop_row(loops[-1]))
     if options.out is not None:
         write_json(
@@ -59,6 +66,6 @@ def _stage_row(stage: Stage) -> str:
 
 def _loop_row(loop: Loop) -> str:
     return (
-        f"{Path(loop.world).stem:<20} {loop.sim_time:>12.0f} {loop.real_time_factor:>12.0f}"
+        f"{Path(loop.world).stem:<23} {loop.sim_time:>12.0f} {loop.real_time_factor:>12.0f}"
         f" {loop.simulation_ms:>11.2f} {loop.mapping_ms:>8.2f} {loop.navigation_ms:>11.2f}"
     )

@@ -10,8 +10,9 @@ from mapping.geometry import Pose, wrap_to_pi
 SMALLEST = np.diag(np.square([5e-4, 5e-4, 2e-4]))
 """No motion is surer than this [m^2, m^2, rad^2]: scans come at odd times between messages."""
 
-SMALLEST_WITH_GYRO = np.diag(np.square([5e-4, 5e-4, 2e-5]))
-"""Nor one whose turn comes from a gyroscope, which hears of it a hundred times a second."""
+SMALLEST_WITH_GYRO = np.diag(np.square([5e-4, 5e-4, 1e-4]))
+"""Nor one whose turn comes from a gyroscope: as a random walk of 5 scans a second this is as much
+after 100 s as a bias of 2e-5 rad/s, which a second's rest leaves unknown."""
 
 LARGEST_SURPRISE = 9.0
 """A surprise beyond three standard deviations counts as one of three."""

@@ -27,7 +27,7 @@ from mapping.slam.sweep import Sweep, make_sweep
 EDGE_FLOOR = np.diag(np.square([0.01, 0.01, 0.004]))
 """No keyframe is surer of its place among the others, whose errors it shares [m^2, m^2, rad^2]."""
 
-RECKONED_FLOOR = np.diag(np.square([0.005, 0.005, 1e-4]))
+RECKONED_FLOOR = np.diag(np.square([0.005, 0.005, 3e-4]))
 """Nor is a motion that was reckoned [m^2, m^2, rad^2]."""
 
 OLD = 20

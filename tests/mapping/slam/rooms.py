@@ -250,9 +250,7 @@ def mirrored(periods: Sequence[Period]) -> list[Period]:
                 replace(
                     each,
                     pose_odom=each.pose_odom * flip,
-                    twist=Twist(
-                        linear_x=each.twist.linear_x, angular_z=-each.twist.angular_z
-                    ),
+                    twist=Twist(linear_x=each.twist.linear_x, angular_z=-each.twist.angular_z),
                 )
                 for each in odometry
             ],

@@ -54,11 +54,9 @@ def value(
     field: HitField, cloud: ScanCloud, pose: Array, prior: Array, information: Array
 ) -> float:
     """Log likelihood of a pose, prior and all."""
-    offset, scratch = pose - prior, np.empty((7, 3))
-    points, normals, weights = cloud.points / EDGE, cloud.normals, cloud.weights
-    told, _ = newton_terms(
-        field.density, pose, points, normals, weights, OUTLIER, scratch[0], scratch[1:4], scratch[4:]
-    )
+    offset, scratch = pose - prior, (np.empty(3), np.empty((3, 3)), np.empty((3, 3)))
+    scan = cloud.points / EDGE, cloud.normals, cloud.weights
+    told, _ = newton_terms(field.density, pose, *scan, OUTLIER, *scratch)
     return told - 0.5 * float(offset @ information @ offset)
 
 

@@ -13,9 +13,7 @@ ROUNDING = 1e-6
 """Scores up to 1 are added up in float32."""
 
 
-@given(
-    seed=SEEDS, rows=st.integers(1, 20), columns=st.integers(1, 20), levels=st.integers(1, 6)
-)
+@given(seed=SEEDS, rows=st.integers(1, 20), columns=st.integers(1, 20), levels=st.integers(1, 6))
 def test_block_maxima_are_the_maxima_over_blocks(
     seed: int, rows: int, columns: int, levels: int
 ) -> None:

@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from mapping.slam.fuse_kernel import fuse, scan_information
+from mapping.slam.fuse_kernel import LEAST_SCATTER, fuse, scan_information
 
 Array = NDArray[np.float64]
 SEEDS = st.integers(0, 10_000)
@@ -22,7 +22,8 @@ def test_a_scans_information_is_that_of_the_sandwich_covariance(seed: int) -> No
     rng = np.random.default_rng(seed)
     curvature, scatter = positive(rng, np.full(3, 200.0)), positive(rng, np.full(3, 80.0))
     bread = np.linalg.inv(curvature)
-    expected = np.linalg.inv(bread @ scatter @ bread + SHARPEST)
+    meat = scatter + LEAST_SCATTER * curvature
+    expected = np.linalg.inv(bread @ meat @ bread + SHARPEST)
     found = scan_information(curvature, scatter, SHARPEST)
     # the ridge is 1e-9 of the scatter, whose elements differ by up to a hundred
     assert found == pytest.approx(expected, rel=1e-4, abs=1e-4 * np.abs(expected).max())
@@ -50,11 +51,12 @@ def test_a_scan_that_agrees_is_fused_as_by_a_kalman_filter(seed: int) -> None:
     predicted, told = rng.normal(size=3), positive(rng, np.full(3, 100.0))
     covariance = positive(rng, np.full(3, 0.05))
     offset = rng.normal(size=3) * 0.01
-    pose, fused, seen = fuse(predicted, covariance, offset, told, NOTHING, SURPRISING)
+    pose, fused, seen, surprise = fuse(predicted, covariance, offset, told, NOTHING, SURPRISING)
     gain = covariance @ np.linalg.inv(covariance + np.linalg.inv(told))
     assert pose == pytest.approx(predicted + gain @ offset, abs=1e-6)
     assert fused == pytest.approx((np.eye(3) - gain) @ covariance, abs=1e-8)
     assert seen == pytest.approx(np.linalg.inv(told + NOTHING * np.eye(3)), abs=1e-9)
+    assert 0.0 <= surprise <= 1.0
 
 
 @given(seed=SEEDS)
@@ -63,9 +65,12 @@ def test_a_prediction_that_is_contradicted_yields_to_the_scan(seed: int) -> None
     predicted, told = np.zeros(3), positive(rng, np.full(3, 100.0))
     covariance = positive(rng, np.full(3, 1e-3))
     offset = rng.choice([-1.0, 1.0], 3) * 0.3
-    pose, fused, seen = fuse(predicted, covariance, offset, told, NOTHING, SURPRISING)
+    pose, fused, seen, told_surprise = fuse(
+        predicted, covariance, offset, told, NOTHING, SURPRISING
+    )
     surprise = offset @ np.linalg.solve(covariance + seen, offset)
     assert surprise > SURPRISING  # else nothing is shown
+    assert told_surprise == pytest.approx(surprise / SURPRISING)
     wide = np.linalg.inv(covariance * surprise / SURPRISING)
     assert pose == pytest.approx(np.linalg.solve(told + wide, told @ offset), abs=1e-6)
     assert np.linalg.norm(pose - offset) < np.linalg.norm(
@@ -77,7 +82,7 @@ def test_a_prediction_that_is_contradicted_yields_to_the_scan(seed: int) -> None
 def test_a_scan_that_tells_nothing_leaves_the_prediction() -> None:
     covariance = np.diag([0.01, 0.02, 0.03])
     predicted = np.array([1.0, 2.0, 3.0])
-    pose, fused, _ = fuse(
+    pose, fused, *_ = fuse(
         predicted, covariance, np.full(3, 0.01), np.zeros((3, 3)), NOTHING, SURPRISING
     )
     assert pose == pytest.approx(predicted)

@@ -1,4 +1,4 @@
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 
 from mapping.geometry import between
 from mapping.grid import OCCUPIED, GridConfig
-from mapping.slam.graph_slam import GraphConfig, GraphSlam
+from mapping.slam.graph_slam import GraphSlam
 from tests.mapping.slam.rooms import (
     LONG_RING_WAY,
     RING_WAY,
@@ -70,14 +70,16 @@ def test_the_trajectory_is_many_times_better_than_the_odometrys(told: Told, lap:
 
 def test_the_map_of_the_second_round_lies_on_that_of_the_first(told: Told, lap: Run) -> None:
     poses, truth = told.mapper.trajectory.poses, lap.truth
-    again = np.arange(len(truth) - 250, len(truth))
-    first = np.array([np.argmin(np.hypot(*(truth[:250] - truth[k])[:, :2].T)) for k in again])
+    again = np.arange(len(truth) - 150, len(truth))
+    apart = np.linalg.norm(truth[again, None, :2] - truth[None, :250, :2], axis=2)
+    first = np.argmin(apart, axis=1)
+    assert np.max(np.min(apart, axis=1)) < 0.1  # else it is no second round
     seen = between(poses[first], poses[again])
     true = between(truth[first], truth[again])
-    apart = between(true, seen)
+    missed = between(true, seen)
     # across the corridor to a fraction of a cell of the map; along it nothing tells
-    assert np.max(np.abs(apart[:, 1])) < 0.05
-    assert np.max(np.abs(apart[:, 2])) < 0.02
+    assert np.max(np.abs(missed[:, 1])) < 0.03
+    assert np.max(np.abs(missed[:, 2])) < 0.02
 
 
 def test_the_map_is_drawn_anew_while_the_robot_goes_on(told: Told, lap: Run) -> None:
@@ -86,11 +88,10 @@ def test_the_map_is_drawn_anew_while_the_robot_goes_on(told: Told, lap: Run) -> 
     assert told.redraws[-1] >= 1
 
 
-def test_finishing_draws_the_map_where_the_corrected_poses_are(lap: Run) -> None:
+def test_finishing_draws_the_map_where_the_corrected_poses_are(told: Told, lap: Run) -> None:
     mapper = GraphSlam(start_pose_map=lap.start, grid=GRID)
-    cut = len(lap.periods) - 200
-    fed(mapper, lap.periods[:cut])
-    assert mapper.loops > 0
+    fed(mapper, lap.periods[: told.loops.index(told.loops[-1]) + 20])
+    assert mapper.painter.is_redrawing
     mapper.finish()
     assert mapper.grid.redraws == 1
     assert not mapper.painter.is_redrawing
@@ -110,20 +111,22 @@ def test_finishing_draws_the_map_where_the_corrected_poses_are(lap: Run) -> None
     assert np.mean(mapper.grid.log_odds != cells) < 0.01
 
 
-def test_pose_and_map_stay_in_one_frame_until_the_map_is_redrawn(lap: Run) -> None:
-    mapper = GraphSlam(GraphConfig(redraw_sweeps=1), start_pose_map=lap.start, grid=GRID)
-    jumps, redraws = [], 0
-    before = None
+def test_the_pose_jumps_no_farther_than_the_map_is_wrong(lap: Run) -> None:
+    mapper = GraphSlam(start_pose_map=lap.start, grid=GRID)
+    jumps, wrong = [], []
+    before, error, redraws = lap.start, 0.0, 0
     for scan, odometry in lap.periods:
         mapper.update(scan, odometry)
-        if before is not None and mapper.grid.redraws == redraws:
-            step = between(before, mapper.pose_map)
-            jumps.append(float(np.hypot(step[0], step[1])))
-        before, redraws = mapper.pose_map, mapper.grid.redraws
-    assert mapper.loops > 0
-    assert mapper.graph.corrections > 0
-    # 4 cm of driving in a period, and as much that a match may correct
-    assert max(jumps) < 0.08
+        step = between(before, mapper.pose_map)
+        jumps.append(float(np.hypot(step[0], step[1])))
+        wrong.append(max(error, mapper.painter.error))
+        before, error, redraws = mapper.pose_map, mapper.painter.error, mapper.grid.redraws
+    assert redraws > 0
+    # 4 cm of driving in a period, 10 % and a match's correction; once the loop is closed the robot
+    # goes over from what it drew last to what it drew first, which do not fit before the redraw
+    assert np.all(np.array(jumps) < 0.06 + np.array(wrong))
+    assert np.max(jumps) > 0.1
+    assert np.count_nonzero(np.array(jumps) > 0.06) <= 3
 
 
 def test_no_more_keyframes_are_taken_when_the_same_round_is_driven_again() -> None:
@@ -145,3 +148,15 @@ def test_the_same_messages_give_the_same_bytes_loops_and_all(told: Told, lap: Ru
     assert again.loops == told.mapper.loops > 0
     assert again.trajectory.poses.tobytes() == told.mapper.trajectory.poses.tobytes()
     assert again.grid.log_odds.tobytes() == told.mapper.grid.log_odds.tobytes()
+
+
+def test_a_robot_that_sees_nothing_goes_where_its_odometry_says_and_closes_no_loop() -> None:
+    run = drive(ring(), RING_WAY, np.random.default_rng(1), scale=0.02, drift=0.01)
+    mapper = GraphSlam(start_pose_map=run.start, grid=GRID)
+    for scan, odometry in run.periods:
+        assert scan is not None
+        mapper.update(replace(scan, ranges=np.full(360, np.inf, dtype=np.float32)), odometry)
+    assert mapper.loops == 0
+    assert len(mapper.graph) == 1
+    off = between(run.odometry_end, mapper.trajectory.poses[-1])
+    assert np.hypot(off[0], off[1]) < 0.01

@@ -91,7 +91,6 @@ def test_ways_are_the_shortest_along_edges(seed: int, count: int, more: int) -> 
         assert ways[keyframe] == pytest.approx(ways[before[keyframe]] + step)
 
 
-@pytest.mark.xfail(strict=True, reason="lengths of edges between the same two are added up")
 def test_a_second_edge_between_two_keyframes_makes_no_way_longer() -> None:
     graph = random_graph(np.random.default_rng(0), 2, 0)
     way = graph.ways(0)[0][1]

@@ -35,11 +35,21 @@ def moved(way: float, turn: float, errors: NDArray[np.float64]) -> Pose:
 
 def random_arcs(rng: np.random.Generator, count: int) -> NDArray[np.float64]:
     """What the odometry says between scans ``(n, 2)``: straights, spins, bends and rests."""
-    kinds = [(0.15, 0.0), (0.05, 0.0), (0.0, 0.2), (0.0, -0.2), (0.15, 0.1), (0.1, -0.1), (0.0, 0.0)]
+    kinds = [
+        (0.15, 0.0),
+        (0.05, 0.0),
+        (0.0, 0.2),
+        (0.0, -0.2),
+        (0.15, 0.1),
+        (0.1, -0.1),
+        (0.0, 0.0),
+    ]
     return rng.choice(np.array(kinds), count)
 
 
-def taught(errors: NDArray[np.float64], rng: np.random.Generator, count: int) -> OdometryCalibration:
+def taught(
+    errors: NDArray[np.float64], rng: np.random.Generator, count: int
+) -> OdometryCalibration:
     calibration = OdometryCalibration()
     for way, turn in random_arcs(rng, count):
         seen = moved(way, turn, errors) + rng.normal(0.0, np.sqrt(np.diag(NOISE)))

@@ -56,9 +56,7 @@ def dense_best(poses: Pose, edges: list[Edge], first: Pose) -> Pose:
 
 @given(seed=SEEDS, count=st.integers(3, 8), more=st.integers(1, 5))
 @settings(max_examples=20)
-def test_the_best_poses_are_those_of_dense_least_squares(
-    seed: int, count: int, more: int
-) -> None:
+def test_the_best_poses_are_those_of_dense_least_squares(seed: int, count: int, more: int) -> None:
     rng = np.random.default_rng(seed)
     true = round_trip(count)
     edges = [edge(true, k, k + 1, rng) for k in range(count - 1)]

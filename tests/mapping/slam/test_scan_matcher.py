@@ -75,9 +75,7 @@ def test_a_pose_found_is_as_far_off_as_its_covariance_says(seed: int, cell: floa
 
 @given(seed=SEEDS, cell=CELLS)
 @settings(max_examples=20)
-def test_along_a_bare_corridor_the_prediction_stays_and_is_no_surer(
-    seed: int, cell: float
-) -> None:
+def test_along_a_bare_corridor_the_prediction_stays_and_is_no_surer(seed: int, cell: float) -> None:
     rng = np.random.default_rng(seed)
     poses = [np.array([x, rng.normal(0.0, 0.1), rng.uniform(-3.0, 3.0)]) for x in (-1.0, -0.5, 0.0)]
     clouds = [cloud_of(scan_of(corridor(), pose, rng), cell) for pose in poses]

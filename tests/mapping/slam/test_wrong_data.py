@@ -51,7 +51,10 @@ def assert_sound(mapper: Mapper) -> None:
 def ranges_of(value: float, beams: int = 360) -> Edit:
     """Every third scan shows the value only."""
     ranges = np.full(beams, value, dtype=np.float32)
-    return lambda k, scan, odometry: (replace(scan, ranges=ranges) if k % 3 == 1 else scan, odometry)
+    return lambda k, scan, odometry: (
+        replace(scan, ranges=ranges) if k % 3 == 1 else scan,
+        odometry,
+    )
 
 
 def only(value: float, beams: int = 360) -> Edit:
