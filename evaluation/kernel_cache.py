@@ -42,19 +42,20 @@ def note_kernels(kind: str) -> None:
 def called_kernels() -> dict[str, str]:
     """Source files of kernels called in this process, each with the folder of its compiled code."""
     modules = [module for name, module in sys.modules.items() if name.split(".")[0] in PACKAGES]
-    return {
-        kernel.py_func.__code__.co_filename: kernel.stats.cache_path
+    kernels = [
+        kernel
         for module in modules
         for kernel in vars(module).values()
         if isinstance(kernel, Dispatcher) and kernel.signatures
-    }
+    ]
+    return {each.py_func.__code__.co_filename: str(each.stats.cache_path) for each in kernels}
 
 
 def _note_of(kind: str) -> Path | None:
     """The file of a note, where numba keeps the code of a kernel that every run calls."""
     if not isinstance(interpolate, Dispatcher):
         return None
-    return Path(interpolate.stats.cache_path) / f"kernels-of-{kind}.json"
+    return Path(str(interpolate.stats.cache_path)) / f"kernels-of-{kind}.json"
 
 
 def _is_compiled(source: Path, folder: Path) -> bool:

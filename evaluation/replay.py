@@ -40,8 +40,8 @@ class ReplayConfig:
 
     log: Path
     """The log: a CARMEN file, a ROS 2 bag (MCAP or folder), or a run folder with a recorded log."""
-    mapper: str = "ogm"
-    """Name of the mapper, as for explore."""
+    mapper: str = "graph"
+    """graph, scan_match, gmapping, ogm or occgridmapp."""
     relations: Path | None = None
     """Relative poses checked by hand, to score the trajectory by (Kümmerle et al. 2009)."""
     max_range: float | None = None

@@ -52,7 +52,7 @@ class OdometryMapper(ABC):
                 return
         self.scans_dropped += 1
 
-    def finish(self) -> None:
+    def finish(self) -> None:  # noqa: B027 - there is nothing to do
         """Nothing is put off."""
 
     @abstractmethod

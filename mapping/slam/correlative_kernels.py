@@ -127,7 +127,8 @@ def search(
                     continue
                 place_in = depth
                 while place_in > first and stack_bounds[place_in - 1] > bound:
-                    stack[place_in] = stack[place_in - 1]
+                    for part in range(3):
+                        stack[place_in, part] = stack[place_in - 1, part]
                     stack_bounds[place_in] = stack_bounds[place_in - 1]
                     place_in -= 1
                 stack[place_in, 0], stack[place_in, 1] = level - 1, child_x

@@ -87,10 +87,13 @@ def side_shares(nx: float, ny: float, unknown: float, sides: NDArray[np.float32]
         sides: Written ``(SIDES,)``.
     """
     if nx == 0.0 and ny == 0.0:
-        sides[:] = unknown
+        for side in range(SIDES):
+            sides[side] = unknown
         return
-    sides[0], sides[1] = max(nx, 0.0) ** 2, max(ny, 0.0) ** 2
-    sides[2], sides[3] = max(-nx, 0.0) ** 2, max(-ny, 0.0) ** 2
+    sides[0] = max(nx, 0.0) ** 2
+    sides[1] = max(ny, 0.0) ** 2
+    sides[2] = max(-nx, 0.0) ** 2
+    sides[3] = max(-ny, 0.0) ** 2
 
 
 @njit(cache=True)
@@ -177,6 +180,12 @@ def newton_terms(
         nx = cos * normals[i, 0] - sin * normals[i, 1]
         ny = sin * normals[i, 0] + cos * normals[i, 1]
         side_shares(nx, ny, 1.0, sides)
+        if nx != 0.0 or ny != 0.0:  # a wall's own shares give back all of it, however it lies
+            whole = np.float32(0.0)
+            for side in range(SIDES):
+                whole += sides[side] * sides[side]
+            for side in range(SIDES):
+                sides[side] /= whole
         height = dx = dy = dxx = dxy = dyy = 0.0
         for j in range(TAPS):
             line = line_x = line_xx = 0.0

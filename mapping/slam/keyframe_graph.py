@@ -94,9 +94,9 @@ class KeyframeGraph:
         self.edges.append(edge)
         dx, dy, turn = edge.pose
         length = STEP_LENGTH + np.hypot(dx, dy) + TURN_LENGTH * abs(turn)
-        information = 1.0 / np.array(
-            [max(edge.covariance[0, 0], edge.covariance[1, 1]), edge.covariance[2, 2]]
-        )
+        a, b, c = edge.covariance[0, 0], edge.covariance[0, 1], edge.covariance[1, 1]
+        widest = 0.5 * (a + c) + np.hypot(0.5 * (a - c), b)
+        information = 1.0 / np.array([widest, edge.covariance[2, 2]])
         pair = (min(edge.a, edge.b), max(edge.a, edge.b))
         if pair in self._pairs:
             row = self._pairs[pair]

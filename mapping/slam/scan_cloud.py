@@ -75,8 +75,6 @@ def make_cloud(
         points=ends,
         normals=normals,
         weights=loose,
-        surface=surface_of(
-            ends, lengths, indices, weights, normals, increment, resolution
-        ),
+        surface=surface_of(ends, lengths, indices, weights, normals, increment, resolution),
         looks_around=increment * len(scan.ranges) > ALL_AROUND,
     )

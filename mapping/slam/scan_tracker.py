@@ -100,9 +100,7 @@ class ScanTracker:
 
     def _reckon(self, motion: Pose, spread: NDArray[np.float64]) -> None:
         moved = compose(self.reckoned, motion)
-        self.reckoned_covariance = _carried(
-            self.reckoned_covariance, self.reckoned, moved, spread
-        )
+        self.reckoned_covariance = _carried(self.reckoned_covariance, self.reckoned, moved, spread)
         self.reckoned = moved
 
     def motion_since_scan(self) -> Pose | None:

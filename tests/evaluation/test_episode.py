@@ -21,7 +21,8 @@ SHORT = EpisodeConfig(world="tiny_room", seed=3, time_limit=15.0)
 DESIGN_KEYS = set(
     "world mapper navigator seed stop_reason sim_time_s wall_time_s real_time_factor coverage "
     "t90_s t95_s t99_s path_length_m contacts min_clearance_m f1_5cm f1_10cm adnn_m h95_m free_iou "
-    "false_free wall_thickness_ratio ate_rmse_m ate_max_m yaw_error_max_deg ate_aligned_rmse_m ate_online_rmse_m "
+    "false_free wall_thickness_ratio ate_rmse_m ate_max_m yaw_error_max_deg ate_aligned_rmse_m "
+    "ate_online_rmse_m "
     "rpe_trans_rmse_m rpe_rot_rmse_deg map_updates scans_dropped map_update_ms_p50 "
     "map_update_ms_p99 map_update_rate_hz map_file_kb peak_rss_mb home_distance_m "
     "dropped_frontiers".split()
@@ -36,6 +37,7 @@ FILES = {
     "trajectory.tum",
     "ground_truth.tum",
     "odometry.tum",
+    "graph.g2o",
 }
 
 
@@ -104,7 +106,7 @@ def test_a_run_that_cannot_be_written_whole_leaves_no_earlier_result_to_vouch_fo
 ) -> None:
     episode = run_episode(EpisodeConfig(time_limit=2.0), plan=TINY_ROOM)
     write_run(episode, tmp_path)
-    broken = patch("evaluation.run_folder.write_map", side_effect=TestbedError("disk full"))
+    broken = patch("evaluation.episode_folder.write_map", side_effect=TestbedError("disk full"))
     with broken, pytest.raises(TestbedError):
         write_run(episode, tmp_path)
     assert not (tmp_path / "result.json").exists()

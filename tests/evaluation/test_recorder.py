@@ -1,6 +1,7 @@
 """Runs that are recorded, and what can be read back of them."""
 
 import sys
+from dataclasses import replace
 from pathlib import Path
 from unittest.mock import patch
 
@@ -83,7 +84,7 @@ def test_the_logs_hold_every_message_that_the_robot_sent(recorded: Path) -> None
 
 def test_mapping_the_log_draws_the_map_that_was_drawn_on_the_way() -> None:
     recorder = Recorder()
-    episode = run_episode(CONFIG, plan=TINY_ROOM, recorder=recorder)
+    episode = run_episode(replace(CONFIG, mapper="ogm"), plan=TINY_ROOM, recorder=recorder)
     log = recorder.run(episode.grid, "run").log
     mapper = make_mapper("ogm", start_pose_map=TINY_ROOM.start)
     for scan, odometry, imu in log.periods():

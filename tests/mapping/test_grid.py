@@ -64,3 +64,49 @@ def test_a_grid_that_cannot_be_is_told(broken: dict[str, float]) -> None:
 def test_a_box_that_is_not_finite_is_told() -> None:
     with pytest.raises(TestbedError, match="finite"):
         OccupancyGrid().cover(0.0, np.nan, 0.0, 1.0)
+
+
+SMALL = GridConfig(resolution=0.05, rows=240, columns=240, origin=(0.0, 0.0), most_cells=480 * 480)
+
+
+@pytest.mark.parametrize("far", [40.0, 1e6, 1e18, 1e300])
+def test_a_grid_does_not_grow_beyond_its_most_cells(
+    far: float, caplog: pytest.LogCaptureFixture
+) -> None:
+    grid = OccupancyGrid(SMALL)
+    grid.log_odds[3, 4] = 7.0
+    for _ in range(3):
+        grid.cover(-far, far, 1.0, 2.0)
+    assert grid.shape == (240, 240)
+    assert grid.origin.tolist() == [0.0, 0.0]
+    assert grid.log_odds[3, 4] == 7.0
+    assert len(caplog.records) == 1, "told once"
+    assert "not drawn" in caplog.text
+
+
+def test_a_refused_box_does_not_keep_a_grid_from_growing_to_what_fits() -> None:
+    grid = OccupancyGrid(SMALL)
+    grid.cover(0.0, 1e6, 0.0, 1e6)
+    grid.cover(-1.0, 12.5, 1.0, 2.0)
+    assert grid.shape == (240, 720), "12 m and a tile to each side"
+    grid.cover(0.0, 1.0, -12.5, 1.0)
+    assert grid.shape == (240, 720), "with two tiles below it would be too large"
+
+
+@given(
+    boxes=st.lists(
+        st.tuples(st.floats(-1e3, 1e3), st.floats(-1e3, 1e3), st.floats(0, 50)), max_size=6
+    )
+)
+def test_no_boxes_make_a_grid_larger_than_its_most_cells(
+    boxes: list[tuple[float, float, float]],
+) -> None:
+    grid = OccupancyGrid(SMALL)
+    for x, y, side in boxes:
+        grid.cover(x, x + side, y, y + side)
+        assert grid.log_odds.size <= SMALL.most_cells
+
+
+def test_most_cells_below_one_make_no_grid() -> None:
+    with pytest.raises(TestbedError, match="most_cells"):
+        GridConfig(most_cells=0)

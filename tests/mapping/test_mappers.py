@@ -39,7 +39,7 @@ def test_settings_reach_the_mapper() -> None:
 @pytest.mark.parametrize(
     ("arguments", "reason"),
     [
-        ({"name": "gmap"}, "occgridmapp, ogm"),
+        ({"name": "gmap"}, "graph, gmapping"),
         ({"name": "ogm", "settings": {"hits": 1.0}}, "hits"),
         ({"name": "ogm", "resolution": 0.0}, "resolution"),
         ({"name": "occgridmapp", "resolution": float("nan")}, "resolution"),

@@ -58,7 +58,7 @@ def test_the_wheel_runs_an_episode_in_a_clean_environment(wheel: Path, tmp_path:
         "from scripts.__main__ import run; sys.exit(run(sys.argv[1:]))"
     )
     words = "explore --world empty_room --resolution 0.05 --time-limit 1.5 --out run".split()
-    # Uncompiled kernels: compiling them would take a minute, running them takes seconds.
+    # Uncompiled kernels: compiling them would take half a minute, running them takes seconds.
     outcome = subprocess.run(
         [str(home / "bin" / "python"), "-c", code, *words],
         cwd=tmp_path,
@@ -71,3 +71,4 @@ def test_the_wheel_runs_an_episode_in_a_clean_environment(wheel: Path, tmp_path:
     result = json.loads((tmp_path / "run" / "result.json").read_text())
     assert result["stop_reason"] == "time_limit"
     assert result["map_updates"] > 3
+    assert "compiling" not in outcome.stderr, "without a compiler there is nothing to wait for"

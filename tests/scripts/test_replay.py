@@ -47,7 +47,7 @@ def test_in_a_pipe_it_prints_the_scores_and_nothing_else(
 ) -> None:
     out = tmp_path / "out"
     words = ["--log", str(log), "--relations", str(relations), "--out", str(out)]
-    assert run(["replay", *words]) == 0
+    assert run(["replay", "--mapper", "ogm", *words]) == 0
     captured = capsys.readouterr()
     assert "wall.log: complete, 19 s of log" in captured.out
     assert "20 scans mapped, 0 dropped" in captured.out
@@ -165,8 +165,8 @@ def test_relations_that_are_missing_broken_or_of_another_log(
         ("--seed", "-1", "seed"),
         ("--set", "hit", "NAME=VALUE"),
         ("--set", "hits=1", "hits"),
-        ("--set", "hit=hard", "hard"),
-        ("--set", "hit=-1", "hit: -1.0"),
+        ("--set", "way=far", "far"),
+        ("--set", "max_range=-1", "max_range: -1.0"),
         ("--navigator", "frontier", "--navigator"),
     ],
 )

@@ -96,6 +96,9 @@ def test_finishing_draws_the_map_where_the_corrected_poses_are(told: Told, lap: 
     assert mapper.grid.redraws == 1
     assert not mapper.painter.is_redrawing
     assert mapper.painter.error <= mapper.grid.resolution
+    # the pose is the last scan's, and 0.2 s of driving
+    step = between(mapper.trajectory.poses[-1], mapper.pose_map)
+    assert np.hypot(step[0], step[1]) < 0.05
     states = mapper.grid.states()
     # both long walls, in the middle of which nobody looks twice, are one or two cells thick
     left = mapper.grid.world_to_cell([-4.0, -3.0])[1]

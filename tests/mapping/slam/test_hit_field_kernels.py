@@ -144,7 +144,9 @@ def slow_terms(
         if not (1 <= np.floor(y) < rows - 2 and 1 <= np.floor(x) < columns - 2):
             likelihood += weight * np.log(outlier)
             continue
-        spline = NdBSpline(knots, density @ slow_shares(facing, 1.0), 3)
+        shares = slow_shares(facing, 1.0)
+        shares = shares / (np.sum(shares**2) if np.any(normal) else 1.0)
+        spline = NdBSpline(knots, density @ shares, 3)
         height = float(spline([[y, x]])[0])
         level = height + outlier
         likelihood += weight * np.log(level)

@@ -1,4 +1,5 @@
 import heapq
+from dataclasses import replace
 
 import gtsam
 import numpy as np
@@ -136,6 +137,23 @@ def test_the_uncertainty_is_no_less_than_the_marginal_covariance(
     largest = np.linalg.eigvalsh(covariance[:2, :2])[-1]
     assert place >= largest * (1.0 - 1e-6)
     assert yaw >= covariance[2, 2] * (1.0 - 1e-6)
+
+
+@given(seed=SEEDS)
+@settings(max_examples=10)
+def test_the_uncertainty_along_a_straight_chain_is_the_marginal_covariance(seed: int) -> None:
+    rng, graph = np.random.default_rng(seed), KeyframeGraph()
+    for x in np.cumsum(rng.uniform(0.2, 3.0, 6)):
+        graph.add(np.array([x, 0.0, 0.0]), CLOUD)
+    for b in range(1, 6):
+        edge = random_edge(rng, graph.poses, b - 1, b)
+        alike = np.diag(edge.covariance)[[0, 0, 2]]
+        graph.connect(replace(edge, covariance=np.diag(alike)))
+    place, yaw = graph.uncertainty(5, 0, graph.ways(5)[1])
+    # every turn of the way moves its end sideways, by what is left of the way
+    covariance = marginal(graph, 5, 0)
+    assert place == pytest.approx(covariance[1, 1], rel=1e-4)
+    assert yaw == pytest.approx(covariance[2, 2], rel=1e-4)
 
 
 def test_the_uncertainty_grows_along_a_chain() -> None:

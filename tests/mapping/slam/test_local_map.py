@@ -22,9 +22,7 @@ def chain(count: int, step: float = 0.5) -> KeyframeGraph:
     return graph
 
 
-def filled(
-    graph: KeyframeGraph, config: LocalMapConfig, center: Pose, keyframes: list[int]
-) -> HitField:
+def filled(graph: KeyframeGraph, center: Pose, keyframes: list[int]) -> HitField:
     """The field that these keyframes make, in this order."""
     field = LocalMap(KeyframeGraph(), CONFIG).field
     field.clear(center)

@@ -104,7 +104,7 @@ def closed(rng: np.random.Generator) -> tuple[Pose, list[Edge], Pose]:
 
 
 def test_true_loops_bring_a_drifted_chain_home() -> None:
-    true, edges, start = closed(np.random.default_rng(0))
+    _, edges, start = closed(np.random.default_rng(0))
     best = PoseGraphOptimizer().optimize(start, edges, rounds=10)
     before = np.hypot(*between(start[:30], start[30:])[:, :2].T)
     after = np.hypot(*between(best[:30], best[30:])[:, :2].T)

@@ -67,7 +67,7 @@ def slow_normals(points: Array, lengths: Array, indices: NDArray[np.int64]) -> A
 def slow_surface(
     points: Array, lengths: Array, indices: NDArray[np.int64], weights: Array, normals: Array
 ) -> Array:
-    """Rows in the order of the readings: towards the one before, the one after, then on the spot."""
+    """Row by row: from each reading towards the one before, the one after, then on the spot."""
     rows = []
     for i in range(len(points)):
         beam_width, reached = min(lengths[i] * INCREMENT, SPACING), 0.0
