@@ -58,8 +58,8 @@ class EpisodeConfig:
     """IMU errors: typical, drifting (a gyroscope zeroed in whole steps) or ideal."""
     lidar: str = "datasheet"
     """Lidar noise: datasheet, worst_case, measured or ideal."""
-    resolution: float = 0.01
-    """Edge of a map cell [m]."""
+    resolution: float | None = None
+    """Edge of a map cell [m]; None takes the mapper's own: 1 cm, or 5 cm for gmapping."""
     seed: int = 0
     """Seed of every random number of the episode."""
     time_limit: float = 1800.0
@@ -71,7 +71,7 @@ class EpisodeConfig:
             raise TestbedError(f"seed: {self.seed}; must be 0 or more")
         if not CONTROL_PERIOD <= self.time_limit < np.inf:
             raise TestbedError(f"time_limit: {self.time_limit} s; must be finite and above 0.1")
-        if not 0.002 <= self.resolution <= 0.5:
+        if self.resolution is not None and not 0.002 <= self.resolution <= 0.5:
             raise TestbedError(f"resolution: {self.resolution} m; must be 0.002 to 0.5")
 
 

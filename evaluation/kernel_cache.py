@@ -4,16 +4,20 @@ What a run needs shows when it is over: the kernels that were called. They are n
 compiled code, so that a note is gone when that is.
 """
 
+import hashlib
 import json
 import sys
 from pathlib import Path
 
+from numba import config
 from numba.core.dispatcher import Dispatcher
 
 from mapping.deskew_kernels import interpolate
 from mapping.io.atomic import write_atomically
 
 PACKAGES = ("mapping", "nav", "envs")
+
+ROOT = Path(__file__).resolve().parents[1]
 
 
 def is_compiled(kind: str) -> bool:
@@ -29,6 +33,29 @@ def is_compiled(kind: str) -> bool:
         return all(_is_compiled(Path(source), Path(folder)) for source, folder in files.items())
     except (OSError, ValueError):
         return False
+
+
+def forget_stale_kernels() -> None:
+    """Take away all compiled code if any kernel's source has changed since it was compiled.
+
+    Numba compares a kernel with its own file only: one that calls kernels of other files would go
+    on with what those were.
+    """
+    note = _note_of("fingerprint")
+    if note is None:
+        return
+    fingerprint = _fingerprint()
+    try:
+        if note.read_text(encoding="utf-8") == fingerprint:
+            return
+    except (OSError, ValueError):
+        pass  # there is none yet
+    folders = [Path(config.CACHE_DIR)] if config.CACHE_DIR else [ROOT / name for name in PACKAGES]
+    for folder in folders:
+        for compiled in folder.rglob("*.nb[ic]"):
+            compiled.unlink(missing_ok=True)
+    note.parent.mkdir(parents=True, exist_ok=True)
+    write_atomically(note, lambda file: file.write(fingerprint.encode()))
 
 
 def note_kernels(kind: str) -> None:
@@ -49,6 +76,17 @@ def called_kernels() -> dict[str, str]:
         if isinstance(kernel, Dispatcher) and kernel.signatures
     ]
     return {each.py_func.__code__.co_filename: str(each.stats.cache_path) for each in kernels}
+
+
+def _fingerprint() -> str:
+    """A hash of every source file that holds a kernel."""
+    digest = hashlib.sha256()
+    for name in PACKAGES:
+        for source in sorted((ROOT / name).rglob("*.py")):
+            text = source.read_bytes()
+            if b"njit" in text:
+                digest.update(text)
+    return digest.hexdigest()
 
 
 def _note_of(kind: str) -> Path | None:

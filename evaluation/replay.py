@@ -27,8 +27,9 @@ from mapping.trajectory import Trajectory, completed, poses_at
 
 COMPLETE, INTERRUPTED = "complete", "interrupted"
 
-FINE_CELL, COARSE_CELL = 0.01, 0.05
-"""Edge of a map cell [m] for a lidar like the LDS-01, and for one that sees a hall."""
+COARSE_CELL = 0.05
+"""Edge of a map cell [m] for a lidar that sees a hall; for one like the LDS-01 it is the mapper's
+own."""
 
 Progress = Callable[[int], None]
 """Told how many scans are mapped."""
@@ -47,7 +48,8 @@ class ReplayConfig:
     max_range: float | None = None
     """Cut the lidar's range to this [m]: what lies beyond becomes a beam without return."""
     resolution: float | None = None
-    """Edge of a map cell [m]; default 0.01 for a lidar that reaches up to 4 m, else 0.05."""
+    """Edge of a map cell [m]; default the mapper's own (0.01, gmapping 0.05) for a lidar that
+    reaches up to 4 m, else 0.05."""
     lidar: LidarName | None = None
     """How noisy the readings are; default lds01 for a lidar that reaches up to 4 m, else sick."""
     period: float = 0.0
@@ -154,11 +156,11 @@ def _decided(config: ReplayConfig, recording: Recording) -> ReplayConfig:
     """The config with the defaults that depend on how far the log's lidar sees."""
     reach = reach_of(recording.log)
     names = {noise: name for name, noise in RANGE_NOISES.items()}
-    cell = COARSE_CELL if reach > LONG_RANGE else FINE_CELL
+    own = COARSE_CELL if reach > LONG_RANGE else None
     return replace(
         config,
         max_range=reach if config.max_range is None else min(reach, config.max_range),
-        resolution=cell if config.resolution is None else config.resolution,
+        resolution=own if config.resolution is None else config.resolution,
         lidar=names[noise_of_reach(reach)] if config.lidar is None else config.lidar,
     )
 

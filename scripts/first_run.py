@@ -2,6 +2,7 @@
 
 import sys
 
+from evaluation.kernel_cache import forget_stale_kernels
 from evaluation.warm_up import compile_kernels, is_warm
 from mapping.mappers import MAPPERS
 
@@ -15,6 +16,7 @@ def compile_if_needed(mapper: str, *, simulates: bool) -> None:
     """
     if mapper not in MAPPERS:
         return
+    forget_stale_kernels()
     if not is_warm(mapper, simulates=simulates):
         print(
             f"compiling the kernels of mapper {mapper}, once: up to a minute ...",

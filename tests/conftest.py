@@ -4,7 +4,10 @@ import os
 
 from hypothesis import settings
 
+from evaluation.kernel_cache import forget_stale_kernels
+
 os.environ.setdefault("MPLBACKEND", "Agg")
 
 settings.register_profile("reproducible", derandomize=True, deadline=None, print_blob=False)
 settings.load_profile("reproducible")
+forget_stale_kernels()

@@ -45,7 +45,7 @@ class MatcherConfig:
 
     togetherness: float = 3.0
     """So many readings count as one: those of one wall err together."""
-    least_curvature: float = 0.01
+    least_curvature: float = 0.007
     """Least information per reading [1/cells^2] for a direction to be believed at all; a wall that
     stands across gives about 0.5 for each reading on it."""
     least_score: float = 0.35
