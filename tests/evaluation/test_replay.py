@@ -138,7 +138,7 @@ def test_what_lies_beyond_the_cut_range_is_not_on_the_map() -> None:
     [(3.5, "lds01", None, 3.5), (81.0, "sick", 0.05, 5.0)],
 )
 def test_a_lidars_reach_decides_on_its_noise_and_the_cells(
-    range_max: float, lidar: str, resolution: float, cut: float
+    range_max: float, lidar: str, resolution: float | None, cut: float
 ) -> None:
     scans = [replace(LOG.scans[0], range_max=range_max)]
     config = replace(COARSE, resolution=None, max_range=5.0)
