@@ -13,10 +13,10 @@ from envs.floor_plan import FloorPlan
 from envs.truth import truth_of_plan
 from envs.worlds import load_world
 from evaluation.recorder import Recorder
+from evaluation.track import Track
 from mapping.burger import LIDAR_RANGE_MAX, MAX_LINEAR_SPEED
 from mapping.coverage import CoverageMeter
 from mapping.errors import TestbedError
-from mapping.geometry import Pose
 from mapping.grid import OccupancyGrid
 from mapping.mappers import make_mapper
 from mapping.messages import ODOMETRY_COLUMNS
@@ -73,42 +73,6 @@ class EpisodeConfig:
             raise TestbedError(f"time_limit: {self.time_limit} s; must be finite and above 0.1")
         if self.resolution is not None and not 0.002 <= self.resolution <= 0.5:
             raise TestbedError(f"resolution: {self.resolution} m; must be 0.002 to 0.5")
-
-
-class Track:
-    """Where the robot was, believed to be and said to be, a row per control period."""
-
-    def __init__(self) -> None:
-        self._map, self._world, self._odom = PoseHistory(), PoseHistory(), PoseHistory()
-
-    def __len__(self) -> int:
-        return len(self._odom)
-
-    def note(self, stamp: float, pose_map: Pose, pose_world: Pose, pose_odom: Pose) -> None:
-        """Add one row; it counts when its last part is in, so Ctrl-C may come at any moment."""
-        self._map.add(stamp, pose_map)
-        self._world.add(stamp, pose_world)
-        self._odom.add(stamp, pose_odom)
-
-    @property
-    def stamps(self) -> NDArray[np.float64]:
-        """Times ``(n,)`` [s]."""
-        return self._odom.stamps
-
-    @property
-    def pose_map(self) -> Pose:
-        """What the mapper believed at the time, in the map frame ``(n, 3)``."""
-        return self._map.poses[: len(self)]
-
-    @property
-    def pose_world(self) -> Pose:
-        """The truth, in the world frame ``(n, 3)``."""
-        return self._world.poses[: len(self)]
-
-    @property
-    def pose_odom(self) -> Pose:
-        """What odometry said, in the frame where the robot started ``(n, 3)``."""
-        return self._odom.poses
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

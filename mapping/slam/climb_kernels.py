@@ -24,6 +24,12 @@ SHORTEST_SHARE = 0.05
 TINY = 1e-30
 """Keeps a division by nothing from failing."""
 
+HALF_LEVER = 0.5
+"""A turn counts as the way of a point half as far away as the farthest."""
+
+FAR_STEEPER = 10.0
+"""Times the whole curvature: what a dropped direction is given, so that it is not found again."""
+
 SINGULAR = 1e-9
 """Added to a curvature, relative to its size, so that it has an inverse."""
 
@@ -42,17 +48,16 @@ def climb(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], float]:
     """The most likely pose of a scan, given a field and a prior.
 
-    A direction in the plane about which the scan tells less than ``least`` a reading, along a bare
-    corridor, is left to the prior: what slope there is comes from the noise of the walls. The same
-    holds for the yaw in a round room.
+    A direction about which the scan tells less than ``least`` a reading, as along a bare corridor,
+    is left to the prior (``drop_flat``): what slope there is comes from the noise of the walls.
 
     Args:
-        density: The field ``(rows, columns)``.
+        density: The field ``(rows, columns, SIDES)``.
         start: Where to start climbing ``(3,)``: x, y in cells, yaw [rad].
         prior: Mean of the prior ``(3,)`` in the same units.
         information: Its inverse covariance ``(3, 3)``.
         points: Readings in the scan's frame, in cells ``(n, 2)``.
-        normals: Directions across the walls that they lie on ``(n, 2)``, zeros where unknown.
+        normals: Directions that their walls face ``(n, 2)``, zeros where unknown.
         weights: How much each tells ``(n,)``.
         outlier: Density of unknown things.
         least: Least curvature per matched weight [1/cells^2] that counts.
@@ -79,7 +84,7 @@ def climb(
         offset = pose - prior
         slope = gradient - times3(information, offset)
         step = times3(inverse3(hessian + information), slope)
-        length = max(math.hypot(step[0], step[1]), 0.5 * lever * abs(step[2]))
+        length = max(math.hypot(step[0], step[1]), HALF_LEVER * lever * abs(step[2]))
         if length > LONGEST_STEP:
             step *= LONGEST_STEP / length
             length = LONGEST_STEP
@@ -178,7 +183,7 @@ def _flattest(curvature: NDArray[np.float64], dropped: NDArray[np.float64]) -> N
     curvature than any other has.
     """
     size = curvature[0, 0] + curvature[1, 1] + curvature[2, 2] + TINY
-    power = inverse3(curvature + 10.0 * size * dropped + SINGULAR * size * np.eye(3))
+    power = inverse3(curvature + FAR_STEEPER * size * dropped + SINGULAR * size * np.eye(3))
     for _ in range(7):
         power = product3(power, power)
         power /= power[0, 0] + power[1, 1] + power[2, 2]

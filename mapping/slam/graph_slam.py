@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike
 
+from mapping.errors import TestbedError
 from mapping.geometry import Pose, between, compose
 from mapping.grid import GridConfig
 from mapping.slam.loop_closer import LoopCloser, LoopConfig
@@ -42,6 +43,16 @@ class GraphConfig(ScanMatchConfig):
     """Steps of the last optimisation."""
     loops: LoopConfig = field(default_factory=LoopConfig)
 
+    def __post_init__(self) -> None:
+        """Refuse figures that make no mapper, or a map that is never drawn to its end."""
+        ScanMatchConfig.__post_init__(self)
+        for name in ("redraw_sweeps", "kept_each", "last_rounds"):
+            if getattr(self, name) < 1:
+                raise TestbedError(f"{name}: {getattr(self, name)}; must be at least 1")
+        for name in ("rest", "redraw_above", "keep_shift", "keep_turn"):
+            if not getattr(self, name) >= 0.0:
+                raise TestbedError(f"{name}: {getattr(self, name)}; must be a number, 0 or more")
+
 
 class GraphSlam(ScanMatch):
     """Scan matching that closes loops."""
@@ -56,13 +67,10 @@ class GraphSlam(ScanMatch):
         grid: GridConfig | None = None,
     ) -> None:
         config = config or GraphConfig()
-        self.way = config.way
         super().__init__(config, start_pose_map=start_pose_map, grid=grid)
         self.loops = 0
         """How many edges that close loops there are."""
-        self._closer = LoopCloser(
-            self.graph, config.local_map(config.way), config.matcher, config.loops
-        )
+        self._closer = LoopCloser(self.graph, config.local_map, config.matcher, config.loops)
         self._optimizer = PoseGraphOptimizer()
         self._resting = 0
         self._may_keep = 0
@@ -71,7 +79,7 @@ class GraphSlam(ScanMatch):
     def finish(self) -> None:
         """Optimise to the end and draw the whole map anew."""
         if self.loops:
-            self._correct(self.config.last_rounds)
+            self._correct(self._nearest, self.config.last_rounds)
         if self.painter.is_redrawing or self.painter.error > self.grid.resolution:
             self.painter.redraw()
             self.painter.work(len(self.painter))
@@ -93,13 +101,10 @@ class GraphSlam(ScanMatch):
         if edges:
             self.loops += len(edges)
             self._resting = self.config.rest
-            place = between(self.graph.poses[number], self._tracker.pose)
-            self._correct()
-            self._tracker.pose = compose(self.graph.poses[number], place)
+            self._correct(number)
 
-    def _correct(self, rounds: int = 1) -> None:
-        """Move the keyframes to where all edges agree best."""
-        reference = self._nearest
+    def _correct(self, reference: int, rounds: int = 1) -> None:
+        """Move the keyframes to where all edges agree best, and the robot with one of them."""
         place = between(self.graph.poses[reference], self._tracker.pose)
         self.graph.correct(self._optimizer.optimize(self.graph.poses, self.graph.edges, rounds))
         self._tracker.pose = compose(self.graph.poses[reference], place)

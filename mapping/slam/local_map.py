@@ -16,15 +16,15 @@ OFF_CENTER = 0.25
 class LocalMapConfig:
     """How large the neighbourhood is, and how fine its field."""
 
-    resolution: float = 0.05
+    resolution: float
     """Edge of a field's cell and standard deviation of its bells [m]."""
-    reach: float = 3.5
+    reach: float
     """Points farther than this from the robot are not matched [m]."""
     outlier: float = 1.0
     """Density that stands for unknown things; a wall seen by one scan has 1."""
-    keyframes: int = 20
+    keyframes: int
     """A local map has at most so many keyframes."""
-    way: float = 8.0
+    way: float
     """Keyframes farther away along edges than this [m] are not trusted to be in place."""
 
 

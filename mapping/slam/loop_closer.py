@@ -128,17 +128,15 @@ class LoopCloser:
             return [self._edge(found)]
         if found.score < self.config.far_score:
             return []
+        oldest = keyframe - self.config.memory
+        self._waiting = [other for other in self._waiting if other.keyframe >= oldest]
         fellows = [other for other in self._waiting if self._agree(other, found)]
-        self._waiting = [
-            other
-            for other in self._waiting
-            if other not in fellows and found.keyframe - other.keyframe <= self.config.memory
-        ]
         ways, _ = self._graph.ways(keyframe)
         apart = any(ways[other.keyframe] >= self.config.apart for other in fellows)
         if not (apart or len(fellows) >= self.config.together):
-            self._waiting += [*fellows, found]
+            self._waiting.append(found)
             return []
+        self._waiting = [other for other in self._waiting if other not in fellows]
         return [self._edge(each) for each in (*fellows, found)]
 
     def _candidate(self, keyframe: int) -> tuple[int, float, float] | None:

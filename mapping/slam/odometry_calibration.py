@@ -1,10 +1,12 @@
-"""Learns from matched scans how far the odometry errs each time: scale, drift and turn."""
+"""Learns from matched scans how far the odometry errs each time: scale, drift, turn and offset."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from mapping.errors import TestbedError
 from mapping.geometry import Pose, wrap_to_pi
 
 SMALLEST = np.diag(np.square([5e-4, 5e-4, 2e-4]))
@@ -22,8 +24,9 @@ LARGEST_SURPRISE = 9.0
 class CalibrationConfig:
     """How wrong the odometry may be, systematically, and how fast that changes.
 
-    The three errors are those of a differential drive (Borenstein and Feng 1996): of the wheels'
-    mean radius, of the difference between the radii, and of the wheel base.
+    The first three errors are those of a differential drive (Borenstein and Feng 1996): of the
+    wheels' mean radius, of the difference between the radii, and of the wheel base. The settings
+    are assumptions that held for a Burger and for the robot of the Intel Research Lab log.
     """
 
     scale_sigma: float = 0.02
@@ -32,9 +35,6 @@ class CalibrationConfig:
     """The same of the turn that is made in each metre of way [rad/m]."""
     turn_sigma: float = 0.05
     """The same of the relative error of turns."""
-    first_noise: float = 100.0
-    """How many times the motion model's variances to expect at first, and at most: a robot that
-    nobody has measured may be ten times worse than a Burger."""
     offset_sigma: float = 0.05
     """The same of how far ahead of its centre the robot turns about a point, as a lidar mounted
     elsewhere than the log says makes it seem to [m]."""
@@ -42,14 +42,26 @@ class CalibrationConfig:
     """No way or turn is surer than this share of itself, nor a heading than this for each metre."""
     turn_arm: float = 0.2
     """A turn moves a place as much as a way of this for each radian [m]."""
+    first_noise: float = 100.0
+    """How many times the motion model's variances to expect at first, and at most: a robot that
+    nobody has measured may be ten times worse than a Burger."""
     noise_step: float = 0.05
     """How fast that is learned: relative change by a match as good, or as bad, as can be."""
     wander: float = 1e-4
     """Share of the prior variance that each match gives back, as errors change with the floor."""
 
+    def __post_init__(self) -> None:
+        """Refuse figures that are no errors."""
+        for name in self.__slots__:
+            value = getattr(self, name)
+            if not (math.isfinite(value) and value >= 0.0):
+                raise TestbedError(f"calibration {name}: {value}; must be finite and not negative")
+        if self.first_noise < 1.0:
+            raise TestbedError(f"calibration first_noise: {self.first_noise}; must be at least 1")
+
 
 class OdometryCalibration:
-    """A Kalman filter of the three systematic errors."""
+    """A Kalman filter of the four systematic errors."""
 
     def __init__(self, config: CalibrationConfig | None = None) -> None:
         self.config = config or CalibrationConfig()
@@ -139,8 +151,7 @@ class OdometryCalibration:
         )
         seen = matched - motion
         seen[2] = wrap_to_pi(seen[2])
-        noise = covariance
-        spread = rows @ self.covariance @ rows.T + noise
+        spread = rows @ self.covariance @ rows.T + covariance
         surprise = seen - rows @ self.errors
         self._learn_noise(surprise, spread)
         gain = np.linalg.solve(spread, rows @ self.covariance).T

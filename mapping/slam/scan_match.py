@@ -30,6 +30,9 @@ EDGE_FLOOR = np.diag(np.square([0.01, 0.01, 0.004]))
 RECKONED_FLOOR = np.diag(np.square([0.005, 0.005, 3e-4]))
 """Nor is a motion that was reckoned [m^2, m^2, rad^2]."""
 
+FAR_APART = 2.0
+"""Of a scan that the map explains, keyframes may be so many times as far apart."""
+
 OLD = 20
 """A keyframe with so many after it is an old one."""
 
@@ -41,9 +44,6 @@ class ScanMatch:
     seen or not finite, when there is no odometry for it, or when no beam of it tells anything. A
     scan that cannot be matched is taken to be where the odometry says.
     """
-
-    way = np.inf
-    """How far along the matches keyframes are trusted to be in place [m]: all of them are."""
 
     def __init__(
         self,
@@ -62,7 +62,7 @@ class ScanMatch:
         self.scans_dropped = 0
         self.pose_map: Pose = start
         """The newest pose in the map frame ``(3,)``; the start pose before any odometry."""
-        self._tracker = ScanTracker(self.config, self.graph, start, self.way)
+        self._tracker = ScanTracker(self.config, self.graph, start)
         self._newest_scan = -np.inf
         self._nearest = 0
         self._history = PoseHistory()
@@ -148,7 +148,7 @@ class ScanMatch:
             costs = costs + turned / config.keyframe_turn
         nearest = int(np.argmin(costs))
         self._nearest = known[nearest]
-        return bool(costs[nearest] > (2.0 if score >= config.explained else 1.0))
+        return bool(costs[nearest] > (FAR_APART if score >= config.explained else 1.0))
 
     def _add_keyframe(self, cloud: ScanCloud) -> int:
         """Make the newest scan a keyframe, tied to those that it was matched with."""

@@ -43,6 +43,9 @@ class ScanMatchConfig:
     """So does one that looks another way by this angle [rad]."""
     explained: float = 0.9
     """Of a scan that the map explains to this share, keyframes may be twice as far apart."""
+    way: float = math.inf
+    """Keyframes farther away along the matches than this [m] are no part of the local map; without
+    loops to close, all are trusted to be in place."""
     matcher: MatcherConfig = field(default_factory=MatcherConfig)
     fusion: FusionConfig = field(default_factory=FusionConfig)
     calibration: CalibrationConfig = field(default_factory=CalibrationConfig)
@@ -53,6 +56,9 @@ class ScanMatchConfig:
             value = getattr(self, name)
             if not (math.isfinite(value) and value > 0.0):
                 raise TestbedError(f"{name}: {value}; must be a finite number above 0")
+        for name in ("explained", "way"):
+            if not getattr(self, name) > 0.0:
+                raise TestbedError(f"{name}: {getattr(self, name)}; must be a number above 0")
         if self.local_keyframes < 1:
             raise TestbedError(f"local_keyframes: {self.local_keyframes}; must be at least 1")
         checked_pose("lidar_pose_base", self.lidar_pose_base)
@@ -78,8 +84,9 @@ class ScanMatchConfig:
             range_noise=self.range_noise,
         )
 
-    def local_map(self, way: float) -> LocalMapConfig:
-        """The neighbourhood to match with, of keyframes no farther along the matches than this."""
+    @property
+    def local_map(self) -> LocalMapConfig:
+        """The neighbourhood to match with."""
         return LocalMapConfig(
-            resolution=self.cell, reach=self.reach, keyframes=self.local_keyframes, way=way
+            resolution=self.cell, reach=self.reach, keyframes=self.local_keyframes, way=self.way
         )

@@ -26,16 +26,13 @@ STILL_SHIFT, STILL_TURN = 5e-4, 5e-4
 class ScanTracker:
     """The pose of the newest scan, in the frame of the keyframes, and the way since then."""
 
-    def __init__(
-        self, config: ScanMatchConfig, graph: KeyframeGraph, start_pose_map: Pose, way: float
-    ) -> None:
+    def __init__(self, config: ScanMatchConfig, graph: KeyframeGraph, start_pose_map: Pose) -> None:
         """Begin where the odometry begins.
 
         Args:
             config: How to match.
             graph: The keyframes to match with.
             start_pose_map: The pose ``(3,)`` where the odometry counts from.
-            way: Keyframes farther along the matches than this [m] are not matched with.
         """
         self.pose = start_pose_map
         """Pose of the newest scan ``(3,)``; the start pose before the first."""
@@ -45,7 +42,7 @@ class ScanTracker:
         """The motion ``(3,)`` since the last keyframe, by odometry and gyroscope alone."""
         self.reckoned_covariance = np.zeros((3, 3))
         """How sure that is ``(3, 3)``, in the frame of the keyframe."""
-        self.local = LocalMap(graph, config.local_map(way))
+        self.local = LocalMap(graph, config.local_map)
         self._matcher = config.matcher
         self._track = FusedTrack(config.fusion)
         self._calibration = OdometryCalibration(config.calibration)

@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from mapping.errors import TestbedError
 from mapping.geometry import between
 from mapping.grid import OCCUPIED, GridConfig
 from mapping.slam.graph_slam import GraphSlam
+from mapping.slam.odometry_calibration import CalibrationConfig
 from tests.mapping.slam.rooms import (
     LONG_RING_WAY,
     RING_WAY,
@@ -163,3 +165,19 @@ def test_a_robot_that_sees_nothing_goes_where_its_odometry_says_and_closes_no_lo
     assert len(mapper.graph) == 1
     off = between(run.odometry_end, mapper.trajectory.poses[-1])
     assert np.hypot(off[0], off[1]) < 0.01
+
+
+@pytest.mark.parametrize(
+    ("config", "settings"),
+    [
+        (GraphConfig, {"redraw_sweeps": 0}),
+        (GraphConfig, {"keep_shift": float("nan")}),
+        (GraphConfig, {"max_range": -1.0}),
+        (GraphConfig, {"way": 0.0}),
+        (CalibrationConfig, {"first_noise": 0.5}),
+        (CalibrationConfig, {"turn_sigma": float("inf")}),
+    ],
+)
+def test_settings_that_make_no_mapper_are_refused(config: type, settings: dict[str, float]) -> None:
+    with pytest.raises(TestbedError, match=next(iter(settings))):
+        config(**settings)

@@ -8,7 +8,7 @@ from tests.mapping.slam.rooms import cloud_of, random_room, scan_of
 
 ROOM = random_room(np.random.default_rng(3))
 SURE = np.diag([1e-4, 1e-4, 1e-5])
-CONFIG = LocalMapConfig(keyframes=4, way=3.0)
+CONFIG = LocalMapConfig(resolution=0.05, reach=3.5, keyframes=4, way=3.0)
 
 
 def chain(count: int, step: float = 0.5) -> KeyframeGraph:

@@ -11,7 +11,7 @@ from mapping.slam.loop_closer import LoopCloser, LoopConfig
 from mapping.slam.scan_matcher import MatcherConfig
 from tests.mapping.slam.rooms import RING_WAY, Walls, box, cloud_of, corridor, ring, scan_of
 
-LOCAL = LocalMapConfig(keyframes=10)
+LOCAL = LocalMapConfig(resolution=0.05, reach=3.5, keyframes=10, way=8.0)
 STEP = 0.4
 
 
