@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from mapping.errors import TestbedError
 from mapping.geometry import between
 from mapping.grid import OCCUPIED, GridConfig
-from mapping.slam.graph_slam import GraphSlam
+from mapping.slam.graph_slam import GraphConfig, GraphSlam
 from mapping.slam.odometry_calibration import CalibrationConfig
 from tests.mapping.slam.rooms import (
     LONG_RING_WAY,
