@@ -143,21 +143,23 @@ def run_episode(
     """
     plan = load_world(config.world) if plan is None else plan
     agent = make_agent(config, plan)
-    truth = truth_of_plan(plan, resolution=agent.mapper.grid.resolution)
-    steps = round(config.time_limit / CONTROL_PERIOD)
-    environment = gymnasium.make(
-        ENVIRONMENT,
-        world=plan,
-        lidar=config.lidar,
-        odometry=config.odometry,
-        odometry_yaw=config.odometry_yaw,
-        imu=config.imu,
-        max_episode_steps=steps,
-    )
+    environment = _make_environment(config, plan)
     try:
+        truth = truth_of_plan(plan, resolution=agent.mapper.grid.resolution)
         return _drive(config, plan, truth, agent, environment, on_progress, recorder)
     finally:
         environment.close()
+
+
+def check_episode(config: EpisodeConfig) -> None:
+    """Refuse what `run_episode` would refuse, without running anything.
+
+    Raises:
+        TestbedError: If the config names something that does not exist or cannot be used.
+    """
+    plan = load_world(config.world)
+    make_agent(config, plan)
+    _make_environment(config, plan).close()
 
 
 def make_agent(config: EpisodeConfig, plan: FloorPlan) -> MappingAgent:
@@ -168,6 +170,18 @@ def make_agent(config: EpisodeConfig, plan: FloorPlan) -> MappingAgent:
         resolution=config.resolution,
     )
     return MappingAgent(mapper, make_navigator(config.navigator, _places(config, plan)))
+
+
+def _make_environment(config: EpisodeConfig, plan: FloorPlan) -> gymnasium.Env[Any, Any]:
+    return gymnasium.make(
+        ENVIRONMENT,
+        world=plan,
+        lidar=config.lidar,
+        odometry=config.odometry,
+        odometry_yaw=config.odometry_yaw,
+        imu=config.imu,
+        max_episode_steps=round(config.time_limit / CONTROL_PERIOD),
+    )
 
 
 def _places(config: EpisodeConfig, plan: FloorPlan) -> ArrayLike | None:

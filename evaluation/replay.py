@@ -152,6 +152,15 @@ def run_replay(
     )
 
 
+def check_replay(config: ReplayConfig, recording: Recording) -> None:
+    """Refuse what `run_replay` would refuse, without mapping anything.
+
+    Raises:
+        TestbedError: The config names something that does not exist or cannot be used.
+    """
+    _mapper(_decided(config, recording), recording)
+
+
 def _decided(config: ReplayConfig, recording: Recording) -> ReplayConfig:
     """The config with the defaults that depend on how far the log's lidar sees."""
     reach = reach_of(recording.log)

@@ -8,8 +8,8 @@ from pathlib import Path
 from tqdm import tqdm
 
 from evaluation.bench import BENCH_WORLDS, Loop, Stage, bench_loop, bench_stages
+from evaluation.episode import EpisodeConfig, check_episode
 from evaluation.run_folder import write_json
-from mapping.errors import TestbedError
 from mapping.mappers import MAPPERS
 from scripts.arguments import is_terminal, parse
 from scripts.first_run import compile_if_needed
@@ -32,8 +32,7 @@ class Bench:
 def run(arguments: list[str]) -> int:
     """Run the verb."""
     options = parse(Bench, "bench", arguments)
-    if options.mapper not in MAPPERS:
-        raise TestbedError(f"mapper: {options.mapper!r}; must be one of {', '.join(MAPPERS)}")
+    _check(options)
     for mapper in MAPPERS:
         compile_if_needed(mapper, simulates=True)
     print(f"{platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}")
@@ -58,6 +57,12 @@ def run(arguments: list[str]) -> int:
             },
         )
     return 0
+
+
+def _check(options: Bench) -> None:
+    """Refuse what cannot be explored before anything is timed."""
+    for world in options.worlds:
+        check_episode(EpisodeConfig(world=world, mapper=options.mapper, seed=options.seed))
 
 
 def _stage_row(stage: Stage) -> str:

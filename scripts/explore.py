@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 import tyro
 
-from evaluation.episode import Episode, EpisodeConfig, Progress, run_episode
+from evaluation.episode import Episode, EpisodeConfig, Progress, check_episode, run_episode
 from evaluation.episode_folder import write_run
 from evaluation.recorder import Recorder
 from evaluation.run_folder import run_folder
@@ -33,7 +33,7 @@ def run(arguments: list[str]) -> int:
     out = options.out or Path("runs") / _folder_name(config)
     recorder = Recorder() if options.record else None
     with run_folder(out):
-        compile_if_needed(config.mapper, simulates=True)
+        compile_if_needed(config.mapper, simulates=True, check=lambda: check_episode(config))
         result = write_run(_watch(config, recorder), out)
     print(summary(result))
     recorded = ", log.carmen, bag" if options.record else ""

@@ -8,7 +8,7 @@ import tyro
 from tqdm import tqdm
 
 from evaluation.recording import load_recording
-from evaluation.replay import COMPLETE, Replay, ReplayConfig, run_replay
+from evaluation.replay import COMPLETE, Replay, ReplayConfig, check_replay, run_replay
 from evaluation.replay_folder import write_replay
 from evaluation.run_folder import run_folder
 from mapping.errors import TestbedError
@@ -78,7 +78,7 @@ def _shown(value: float | None) -> str:
 def _watch(config: ReplayConfig) -> Replay:
     """Map the log, a bar growing before the user's eyes if there is a terminal."""
     recording = load_recording(config.log, config.relations)
-    compile_if_needed(config.mapper, simulates=False)
+    compile_if_needed(config.mapper, simulates=False, check=lambda: check_replay(config, recording))
     with tqdm(
         total=len(recording.log.scans), unit="scan", disable=not is_terminal(), leave=False
     ) as bar:
