@@ -8,9 +8,13 @@ from numpy.typing import NDArray
 
 from mapping.errors import TestbedError
 from mapping.geometry import Pose, wrap_to_pi
+from nav.greedy_rules import GREEDY_RULES
 from nav.planner import CostField
 from nav.tour import best_order
 from nav.viewpoint import Viewpoint
+
+TOUR = "tour"
+RULES = (TOUR, *GREEDY_RULES)
 
 LEAST_TIME = 1.5
 """However loyal, no first leg counts for less [s]: half a settling time."""
@@ -20,6 +24,8 @@ LEAST_TIME = 1.5
 class DecisionConfig:
     """What a viewpoint's worth is weighed by."""
 
+    rule: str = TOUR
+    """``tour``, or one of GREEDY_RULES, to compare with; the rest is for ``tour`` alone."""
     speed: float = 0.2
     """Speed that costs are turned into time with [m/s]."""
     turn_speed: float = 1.2
@@ -39,6 +45,8 @@ class DecisionConfig:
         """Refuse figures that decide nothing."""
         if not (self.speed > 0.0 and self.turn_speed > 0.0 and self.settling_time > 0.0):
             raise TestbedError("decision: speed, turn_speed and settling_time must be above 0")
+        if self.rule not in RULES:
+            raise TestbedError(f"decision rule: {self.rule!r}; must be one of {', '.join(RULES)}")
         if self.toured < 1:
             raise TestbedError(f"decision toured: {self.toured}; must be at least 1")
 
@@ -50,7 +58,9 @@ def choose(
     current: Viewpoint | None,
     config: DecisionConfig,
 ) -> Viewpoint | None:
-    """The first viewpoint of the best tour over one viewpoint of each frontier; None of none.
+    """The viewpoint that the rule chooses; None of none.
+
+    The rule ``tour`` takes the first of the best tour over one viewpoint of each frontier.
 
     Args:
         viewpoints: Candidates, any number of a frontier.
@@ -59,6 +69,8 @@ def choose(
         current: Where it is going, if anywhere; favoured.
         config: What is weighed how.
     """
+    if config.rule != TOUR:
+        return GREEDY_RULES[config.rule](viewpoints, field, pose)
     best: dict[int, tuple[float, Viewpoint, float]] = {}
     for viewpoint in viewpoints:
         time = _first_leg(viewpoint, pose, current, config)

@@ -1,11 +1,15 @@
 """The navigators by name."""
 
 from collections.abc import Callable
+from functools import partial
 
 from numpy.typing import ArrayLike
 
 from mapping.errors import TestbedError
+from nav.decision import DecisionConfig
 from nav.explorer import FrontierExplorer
+from nav.explorer_config import ExplorerConfig
+from nav.greedy_rules import GREEDY_RULES
 from nav.navigator import Navigator
 from nav.reactive import Reactive
 from nav.waypoints import Waypoints
@@ -13,8 +17,15 @@ from nav.waypoints import Waypoints
 WAYPOINTS = "waypoints"
 """The navigator that needs to be told where to go."""
 
+
+def _explorer_by(rule: str) -> FrontierExplorer:
+    """The explorer with a decision rule that it is compared with."""
+    return FrontierExplorer(ExplorerConfig(decision=DecisionConfig(rule=rule)))
+
+
 NAVIGATORS: dict[str, Callable[..., Navigator]] = {
     "frontier": FrontierExplorer,
+    **{rule: partial(_explorer_by, rule) for rule in GREEDY_RULES},
     "reactive": Reactive,
     WAYPOINTS: Waypoints,
 }

@@ -13,6 +13,7 @@ from mapping.errors import TestbedError
 from mapping.geometry import Pose, between, compose
 from mapping.grid import GridConfig
 from mapping.slam.loop_closer import LoopCloser, LoopConfig
+from mapping.slam.metric_scale import MetricScaleConfig, lidar_scale_error
 from mapping.slam.pose_graph_optimizer import PoseGraphOptimizer
 from mapping.slam.scan_cloud import ScanCloud
 from mapping.slam.scan_match import ScanMatch
@@ -41,6 +42,9 @@ class GraphConfig(ScanMatchConfig):
     """At most so many are kept for each keyframe."""
     last_rounds: int = 10
     """Steps of the last optimisation."""
+    scale_step: float = 2e-4
+    """A change of the metric scale by less than this is none: 5 mm over 25 m."""
+    metric_scale: MetricScaleConfig = field(default_factory=MetricScaleConfig)
     loops: LoopConfig = field(default_factory=LoopConfig)
 
     def __post_init__(self) -> None:
@@ -49,7 +53,7 @@ class GraphConfig(ScanMatchConfig):
         for name in ("redraw_sweeps", "kept_each", "last_rounds"):
             if getattr(self, name) < 1:
                 raise TestbedError(f"{name}: {getattr(self, name)}; must be at least 1")
-        for name in ("rest", "redraw_above", "keep_shift", "keep_turn"):
+        for name in ("rest", "redraw_above", "keep_shift", "keep_turn", "scale_step"):
             if not getattr(self, name) >= 0.0:
                 raise TestbedError(f"{name}: {getattr(self, name)}; must be a number, 0 or more")
 
@@ -80,6 +84,7 @@ class GraphSlam(ScanMatch):
         """Optimise to the end and draw the whole map anew."""
         if self.loops:
             self._correct(self._nearest, self.config.last_rounds)
+        self.painter.scale = self._metric_scale()
         if self.painter.is_redrawing or self.painter.error > self.grid.resolution:
             self.painter.redraw()
             self.painter.work(len(self.painter))
@@ -89,10 +94,22 @@ class GraphSlam(ScanMatch):
         """Also look whether the keyframe closes a loop."""
         number = super()._add_keyframe(cloud)
         self._may_keep, self._kept_pose = self.config.kept_each, None
+        scale = self._metric_scale()
+        if abs(scale - self.painter.scale) > self.config.scale_step:
+            self.painter.scale = scale
         self._resting = max(self._resting - 1, 0)
         if self._resting == 0:
             self._close_loops(number)
         return number
+
+    def _metric_scale(self) -> float:
+        """What a metre of the lidar is [m], by what the wheels say of the same ways."""
+        config = self.config
+        difference, variance = self._tracker.way_disagreement
+        error = lidar_scale_error(
+            difference, variance, config.range_noise.scale_sigma, config.metric_scale
+        )
+        return 1.0 / (1.0 + error)
 
     def _close_loops(self, number: int) -> None:
         edges = self._closer.edges(number, self._tracker.local.keyframes)

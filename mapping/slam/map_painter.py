@@ -10,6 +10,7 @@ from mapping.geometry import Pose, between, compose
 from mapping.grid import OccupancyGrid
 from mapping.ogm import OgmConfig
 from mapping.slam.keyframe_graph import KeyframeGraph
+from mapping.slam.metric_scale import grown, scaled
 from mapping.slam.sweep import Sweep
 
 ARM = 3.0
@@ -24,23 +25,31 @@ class MapPainter:
         self._config = config
         self._graph = graph
         self._kept: list[tuple[int, Pose, Sweep]] = []
-        self._drawn = np.zeros((0, 3))
-        self._next_drawn = np.zeros((0, 3))
+        self.scale = 1.0
+        """Metres of the map to a metre of the lidar, when it is drawn anew: grown or shrunk about
+        the first keyframe."""
+        self._drawn, self._drawn_scale = np.zeros((0, 3)), 1.0
+        self._next_drawn, self._next_scale = np.zeros((0, 3)), 1.0
         self._next_grid: OccupancyGrid | None = None
         self._next = 0
-        self._error, self._error_state = 0.0, (0, 0)
+        self._error, self._error_state = 0.0, (0, 0, 1.0)
 
     def __len__(self) -> int:
         return len(self._kept)
 
     def to_map(self, keyframe: int, pose: Pose) -> Pose:
         """Where a pose of the corrected graph, near a keyframe, lies in the map as it is drawn."""
-        self._drawn = self._extended(self._drawn)
-        return compose(self._drawn[keyframe], between(self._graph.poses[keyframe], pose))
+        self._drawn = self._extended(self._drawn, self._drawn_scale)
+        place = between(self._graph.poses[keyframe], pose)
+        return compose(self._drawn[keyframe], scaled(place, self._drawn_scale))
+
+    def corrected(self, poses: Pose) -> Pose:
+        """Where poses of the corrected graph ``(n, 3)`` lie in a map that were drawn anew now."""
+        return grown(poses, self._graph.poses[:1], self.scale)
 
     def paint(self, sweep: Sweep, pose_map: Pose) -> None:
         """Draw a scan into the map as it is."""
-        sweep.draw(self.grid, self._config, pose_map)
+        sweep.draw(self.grid, self._config, pose_map, self._drawn_scale)
 
     def keep(self, keyframe: int, pose: Pose, sweep: Sweep) -> None:
         """Keep a scan, taken at a pose of the corrected graph, for drawing the map anew."""
@@ -49,10 +58,10 @@ class MapPainter:
     @property
     def error(self) -> float:
         """How far from its corrected place anything is drawn [m], about."""
-        state = (self.grid.redraws, self._graph.corrections)
+        state = (self.grid.redraws, self._graph.corrections, self.scale)
         if state != self._error_state:
-            self._drawn = self._extended(self._drawn)
-            off = between(self._drawn, self._graph.poses)
+            self._drawn = self._extended(self._drawn, self._drawn_scale)
+            off = between(self._drawn, self.corrected(self._graph.poses))
             errors = np.hypot(off[:, 0], off[:, 1]) + ARM * np.abs(off[:, 2])
             self._error, self._error_state = float(np.max(errors, initial=0.0)), state
         return self._error
@@ -65,32 +74,36 @@ class MapPainter:
     def redraw(self) -> None:
         """Begin to draw the map anew from the corrected poses."""
         self._next_grid = OccupancyGrid(self.grid.config)
-        self._next_drawn = self._graph.poses.copy()
+        self._next_drawn = self.corrected(self._graph.poses)
+        self._next_scale = self.scale
         self._next = 0
 
     def work(self, sweeps: int) -> None:
         """Draw so many kept scans into the new map, if there is one; put it in place when done."""
         if self._next_grid is None:
             return
-        self._next_drawn = self._extended(self._next_drawn)
+        scale = self._next_scale
+        self._next_drawn = self._extended(self._next_drawn, scale)
         for keyframe, place, sweep in self._kept[self._next : self._next + sweeps]:
-            sweep.draw(self._next_grid, self._config, compose(self._next_drawn[keyframe], place))
+            pose_map = compose(self._next_drawn[keyframe], scaled(place, scale))
+            sweep.draw(self._next_grid, self._config, pose_map, scale)
         self._next += sweeps
         if self._next < len(self._kept):
             return
         self.grid.log_odds, self.grid.origin = self._next_grid.log_odds, self._next_grid.origin
         self.grid.redraws += 1
-        self._drawn = self._next_drawn
+        self._drawn, self._drawn_scale = self._next_drawn, scale
         self._next_grid = None
 
-    def _extended(self, drawn: Pose) -> Pose:
+    def _extended(self, drawn: Pose, scale: float) -> Pose:
         """Drawn poses with those of newer keyframes, each where it lies from the one before it."""
         poses = self._graph.poses
         if len(drawn) == len(poses):
             return drawn
         if len(drawn) == 0:
-            return poses.copy()
+            return grown(poses, poses[:1], scale)
         rows = [drawn[-1]]
         for keyframe in range(len(drawn), len(poses)):
-            rows.append(compose(rows[-1], between(poses[keyframe - 1], poses[keyframe])))
+            step = scaled(between(poses[keyframe - 1], poses[keyframe]), scale)
+            rows.append(compose(rows[-1], step))
         return np.concatenate((drawn, rows[1:]))

@@ -80,7 +80,7 @@ class ScanMatch:
             return PoseHistory()
         references = np.array(self._references)
         poses = compose(self.graph.poses[references], self._history.poses)
-        return PoseHistory.of(self._history.stamps, poses)
+        return PoseHistory.of(self._history.stamps, self.painter.corrected(poses))
 
     def update(
         self, scan: LaserScan | None, odometry: Sequence[Odometry], imu: Sequence[Imu] = ()

@@ -91,6 +91,12 @@ class ScanTracker:
         self.pose, self.covariance = match.pose, match.covariance
         return match.score
 
+    @property
+    def way_disagreement(self) -> tuple[float, float]:
+        """How much longer ways are by matching than by the odometry, relative; and its variance."""
+        calibration = self._calibration
+        return float(calibration.errors[0]), float(calibration.covariance[0, 0])
+
     def forget_reckoned(self) -> None:
         """Count the reckoned motion from the newest scan on: it became a keyframe."""
         self.reckoned, self.reckoned_covariance = np.zeros(3), np.zeros((3, 3))

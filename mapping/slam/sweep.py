@@ -27,17 +27,22 @@ class Sweep:
     angle_min: float
     angle_increment: float
 
-    def draw(self, grid: OccupancyGrid, config: OgmConfig, pose_map: Pose) -> None:
-        """Draw the scan as taken from a pose ``(3,)``; a scan without beams draws nothing."""
+    def draw(
+        self, grid: OccupancyGrid, config: OgmConfig, pose_map: Pose, scale: float = 1.0
+    ) -> None:
+        """Draw the scan as taken from a pose ``(3,)``; a scan without beams draws nothing.
+
+        ``scale`` is what a metre that the lidar measured is believed to be [m].
+        """
         if len(self.indices) == 0:
             return
         beams = Beams(
             indices=self.indices.astype(np.int64),
-            lengths=self.lengths.astype(np.float64),
+            lengths=scale * self.lengths.astype(np.float64),
             hits=self.hits,
         )
         angles = self.angle_min + self.indices.astype(np.float64) * self.angle_increment
-        poses = self.poses_base.astype(np.float64)
+        poses = self.poses_base.astype(np.float64) * (scale, scale, 1.0)
         draw_beams(grid, config, beams, angles, self.angle_increment, pose_map, poses)
 
 

@@ -3,7 +3,7 @@ import pytest
 
 from mapping.burger import LIDAR_RANGE_MAX
 from mapping.geometry import Pose, between, compose
-from mapping.grid import GridConfig, OccupancyGrid
+from mapping.grid import OCCUPIED, GridConfig, OccupancyGrid
 from mapping.ogm import OgmConfig
 from mapping.sensor_model import read_beams
 from mapping.slam.keyframe_graph import KeyframeGraph
@@ -135,3 +135,27 @@ def test_work_without_a_redraw_changes_nothing() -> None:
 def test_a_map_without_keyframes_has_no_error() -> None:
     graph = KeyframeGraph()
     assert MapPainter(OccupancyGrid(GRID), OgmConfig(), graph).error == 0.0
+
+
+def test_a_map_in_another_metre_is_the_map_grown_about_its_first_keyframe() -> None:
+    painter, graph = painted()
+    before = occupied_places(painter.grid)
+    painter.scale = 1.05
+    assert painter.error > 0.02
+    painter.redraw()
+    painter.work(len(painter))
+    assert painter.error == pytest.approx(0.0, abs=1e-9)
+    anchor = graph.poses[0, :2]
+    after = occupied_places(painter.grid)
+    wanted = anchor + 1.05 * (before - anchor)
+    apart = np.array([np.hypot(*(after - place).T).min() for place in wanted[::7]])
+    assert np.percentile(apart, 95) < 0.03
+    ahead = compose(graph.poses[3], (0.1, 0.0, 0.0))
+    grown_there = anchor + 1.05 * (ahead[:2] - anchor)
+    assert painter.to_map(3, ahead)[:2] == pytest.approx(grown_there)
+    assert painter.corrected(ahead[None])[0, :2] == pytest.approx(grown_there)
+
+
+def occupied_places(grid: OccupancyGrid) -> np.ndarray:
+    cells = np.argwhere(grid.states() == OCCUPIED)
+    return np.asarray(grid.cell_to_world(cells))

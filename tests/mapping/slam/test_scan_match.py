@@ -83,7 +83,8 @@ def test_quarter_turns_and_whole_cells_turn_and_shift_path_and_map(
     there = fed(make(start_pose_map=compose(turn, run.start), grid=GRID), run.periods)
     off = between(compose(turn, here.trajectory.poses), there.trajectory.poses)
     # the climb ends within a thousandth of a cell and points on edges of cells fall to either side
-    assert np.max(np.hypot(off[:, 0], off[:, 1])) < 0.01
+    away = np.hypot(*(run.truth[:, :2] - run.start[:2]).T)
+    assert np.all(np.hypot(off[:, 0], off[:, 1]) < 0.01 + GraphConfig().scale_step * away)
     assert np.max(np.abs(off[:, 2])) < 0.005
     rotated = np.rot90(here.grid.states(), -quarters)
     shift = round(turn[1] / EDGE), round(turn[0] / EDGE)
