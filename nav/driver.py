@@ -15,11 +15,13 @@ from mapping.messages import LaserScan, Twist
 from nav.driver_config import DriverConfig
 from nav.headway import Headway
 from nav.map_jump import MapJump
+from nav.movers import Movers
 from nav.path_follower import PathFollower
 from nav.path_kernels import SEARCHED_POINTS, is_near
 from nav.recovery import Recovery
 from nav.safety import Safety
 from nav.scan_points import ScanPoints
+from nav.yielding import Yielding
 
 
 class Driver:
@@ -33,6 +35,8 @@ class Driver:
         self._safety = Safety(self.config.safety)
         self._recovery = Recovery(self.config.recovery)
         self._scan_points = ScanPoints()
+        self._movers = Movers(self.config.movers)
+        self._yielding = Yielding(self.config.yielding)
         self._headway = Headway(self.config.headway)
         self._map_jump = MapJump()
         self._pose: Pose = np.zeros(3)
@@ -70,10 +74,13 @@ class Driver:
         self.jump = self._map_jump.update(grid, pose, self._follower.last, self.period)
         if self.jump is not None:
             self._scan_points.follow_jump(self.jump)
+            self._movers.follow_jump(self.jump)
             self._headway.restart()
         self.has_new_scan = self._scan_points.update(
             scan, pose, self.period, self.config.obstacle_reach
         )
+        if self.has_new_scan and self._scan_points.view is not None:
+            self._movers.update(self._scan_points.view)
         self._elapsed += self.period
 
     def stand(self) -> Twist:
@@ -122,6 +129,22 @@ class Driver:
 
     def _move(self, wanted: Twist) -> Twist:
         """The twist that is safe, remembered as the one to accelerate from."""
-        twist = self._safety.limit(wanted, self._pose, self._scan_points.points, self._grid)
+        twist = self._safe(self._give_way(wanted))
         self._follower.last = twist
         return twist
+
+    def _give_way(self, wanted: Twist) -> Twist:
+        """The twist that keeps out of the way of what moves; waiting for it is no lost headway."""
+        twist = self._yielding.limit(
+            wanted,
+            self._pose,
+            self.time,
+            self._movers.known,
+            lambda each: self._safe(each) == each,
+        )
+        if twist != wanted:
+            self._headway.restart()
+        return twist
+
+    def _safe(self, twist: Twist) -> Twist:
+        return self._safety.limit(twist, self._pose, self._scan_points.points, self._grid)

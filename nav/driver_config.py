@@ -3,9 +3,11 @@
 from dataclasses import dataclass
 
 from nav.headway import HeadwayConfig
+from nav.movers import MoversConfig
 from nav.path_follower import FollowerConfig
 from nav.recovery import RecoveryConfig
 from nav.safety import SafetyConfig
+from nav.yielding import YieldingConfig
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -14,6 +16,8 @@ class DriverConfig:
 
     follower: FollowerConfig = FollowerConfig()
     safety: SafetyConfig = SafetyConfig()
+    movers: MoversConfig = MoversConfig()
+    yielding: YieldingConfig = YieldingConfig()
     headway: HeadwayConfig = HeadwayConfig()
     recovery: RecoveryConfig = RecoveryConfig()
     first_look: float = 1.0

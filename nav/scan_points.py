@@ -1,6 +1,8 @@
-"""Turns the newest scan into obstacle points in the map frame, each from its beam's own pose."""
+"""Turns the newest scan into points in the map frame, each from its beam's own pose."""
 
+import math
 from collections import deque
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,11 +19,32 @@ REMEMBERED_POSES = 8
 """Poses kept, 0.1 s apart: a scan is at most 0.3 s old when it arrives."""
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ScanView:
+    """What a whole scan saw, in the map frame, with one place for all its beams."""
+
+    stamp: float
+    """Time of its middle beam [s]."""
+    points: NDArray[np.float64]
+    """Where its beams met something ``(n, 2)`` [m], each from its own pose."""
+    origin: NDArray[np.float64]
+    """Where the sensor was at its middle beam ``(2,)`` [m]."""
+    bearing: float
+    """Direction of its first beam [rad]."""
+    increment: float
+    """Angle from beam to beam [rad], with what the robot turned meanwhile."""
+    ranges: NDArray[np.float64]
+    """How far its beams went ``(k,)`` [m]: inf where they met nothing, NaN where they failed."""
+
+
 class ScanPoints:
     """Keeps a short history of poses and places beams of a rolling scan by it."""
 
     def __init__(self) -> None:
         self.points: NDArray[np.float64] = np.zeros((0, 2))
+        """What the newest scan met within reach ``(n, 2)`` [m]."""
+        self.view: ScanView | None = None
+        """All that it saw; None before the first scan, and of a scan of fewer than two beams."""
         self.time = 0.0
         self._stamp = -1.0
         self._poses: deque[tuple[float, ...]] = deque(maxlen=REMEMBERED_POSES)
@@ -45,7 +68,7 @@ class ScanPoints:
         self._remember(pose)
         if is_new and scan is not None:
             self._stamp = scan.stamp
-            self.points = self._place(scan, reach)
+            self._place(scan, reach)
         return is_new
 
     def follow_jump(self, jump: Pose) -> None:
@@ -58,10 +81,31 @@ class ScanPoints:
         x, y, yaw = pose.tolist()
         self._poses.append((self.time, x, y, yaw, 0.0, 0.0))
 
-    def _place(self, scan: LaserScan, reach: float) -> NDArray[np.float64]:
-        good = (scan.ranges >= scan.range_min) & (scan.ranges <= min(reach, scan.range_max))
-        poses = interpolate(np.array(self._poses), scan.beam_stamps[good])
-        ranges = scan.ranges[good].astype(np.float64)
+    def _place(self, scan: LaserScan, reach: float) -> None:
+        """Place the beams of a scan by the poses remembered."""
+        met = (scan.ranges >= scan.range_min) & (scan.ranges <= scan.range_max)
+        beams = np.flatnonzero(met)
+        poses = interpolate(np.array(self._poses), scan.beam_stamps)
+        ranges = scan.ranges.astype(np.float64)
         points: NDArray[np.float64]
-        _, _, points = aim(IN_THE_MAP, poses, LIDAR_POSE_BASE, scan.angles[good], ranges)
-        return points
+        _, _, points = aim(
+            IN_THE_MAP, poses[beams], LIDAR_POSE_BASE, scan.angles[beams], ranges[beams]
+        )
+        self.points = points[ranges[beams] <= reach]
+        self.view = _view_of(scan, poses, points) if len(poses) > 1 else None
+
+
+def _view_of(scan: LaserScan, poses: Pose, points: NDArray[np.float64]) -> ScanView:
+    """The view of a scan of two beams or more, taken at poses ``(k, 3)``."""
+    middle = len(poses) // 2
+    directions = np.unwrap(poses[:, 2]) + LIDAR_POSE_BASE[2] + scan.angles
+    ranges = scan.ranges.astype(np.float64)
+    ranges[~(ranges >= scan.range_min)] = math.nan
+    return ScanView(
+        stamp=float(scan.beam_stamps[middle]),
+        points=points,
+        origin=compose(poses[middle], np.array(LIDAR_POSE_BASE))[:2],
+        bearing=float(directions[0]),
+        increment=float((directions[-1] - directions[0]) / (len(poses) - 1)),
+        ranges=ranges,
+    )

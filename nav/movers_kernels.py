@@ -1,0 +1,70 @@
+"""The inner loop of noticing movers: which points lie where earlier scans saw nothing."""
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+SMALLEST = 1e-9
+"""Keeps a point at the sensor itself from dividing by zero [m]."""
+
+FULL_TURN = 360
+"""A scan of so many beams looks all round, as the LDS-01's does: its last beam is beside its first.
+Of others the beams beyond the ends are taken for failed."""
+
+
+@njit(cache=True)
+def seen_through(
+    points: NDArray[np.float64],
+    origins: NDArray[np.float64],
+    bearings: NDArray[np.float64],
+    increments: NDArray[np.float64],
+    ranges: NDArray[np.float64],
+    aside: float,
+    margin: float,
+    share: float,
+) -> NDArray[np.int64]:
+    """How many of the earlier scans saw through each point ``(n,)``.
+
+    A scan saw through a point if all its beams that pass within ``aside`` [m] of it went farther,
+    by ``margin`` [m] and ``share`` of the distance. A beam that failed (NaN) tells that it did not,
+    and so does one that the scan does not have.
+
+    Args:
+        points: Where something is now ``(n, 2)`` [m].
+        origins: Where each scan was taken ``(m, 2)`` [m].
+        bearings: Direction of each scan's first beam ``(m,)`` [rad].
+        increments: Angle from beam to beam of each scan ``(m,)`` [rad], not 0.
+        ranges: How far its beams went ``(m, k)`` [m]; inf for those that met nothing.
+        aside: How thick a thing is looked for, to either side [m].
+        margin: What the ranges and the pose may err by [m].
+        share: What they may err by besides, for each metre.
+    """
+    beams = ranges.shape[1]
+    counts = np.zeros(len(points), dtype=np.int64)
+    for i in range(len(points)):
+        for j in range(len(origins)):
+            dx, dy = points[i, 0] - origins[j, 0], points[i, 1] - origins[j, 1]
+            distance = math.hypot(dx, dy)
+            turn = math.atan2(dy, dx) - bearings[j]
+            step = abs(increments[j])
+            if increments[j] < 0.0:
+                turn = -turn
+            beam = math.floor(turn % (2.0 * math.pi) / step + 0.5)
+            span = max(1, math.ceil(min(aside / (distance * step + SMALLEST), beams / 4.0)))
+            counts[i] += _all_farther(
+                ranges[j], beam - span, beam + span, distance + margin + share * distance
+            )
+    return counts
+
+
+@njit(cache=True)
+def _all_farther(ranges: NDArray[np.float64], first: int, last: int, least: float) -> bool:
+    """Whether the beams from ``first`` to ``last``, counted round the circle, went farther."""
+    beams = len(ranges)
+    for k in range(first, last + 1):
+        beam = k % beams if beams >= FULL_TURN else k
+        if not (0 <= beam < beams and ranges[beam] > least):
+            return False
+    return True
