@@ -20,7 +20,7 @@ from nav.path_follower import PathFollower
 from nav.path_kernels import SEARCHED_POINTS, is_near
 from nav.recovery import Recovery
 from nav.safety import Safety
-from nav.scan_points import ScanPoints
+from nav.scan_points import ScanPoints, ScanView
 from nav.yielding import Yielding
 
 
@@ -67,6 +67,11 @@ class Driver:
     def path_ahead(self) -> NDArray[np.float64]:
         """The part of the path still to drive ``(n, 2)``."""
         return self._follower.path_ahead
+
+    @property
+    def newest_view(self) -> ScanView | None:
+        """What the newest scan saw, near and far; None before there was one."""
+        return self._scan_points.view
 
     def see(self, grid: OccupancyGrid, pose: Pose, scan: LaserScan | None) -> None:
         """Take the map, the pose and the scan of this period."""

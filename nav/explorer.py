@@ -23,6 +23,7 @@ from nav.given_up import GivenUp
 from nav.map_jump import shift_at
 from nav.navigator import COMPLETE, RUNNING, STUCK, UNREACHABLE_START, DroppedFrontier, Plan
 from nav.planner import CostField
+from nav.returns import Returns
 from nav.viewpoint import Viewpoint, ViewpointFinder, gain_at
 from nav.visited_places import VisitedPlaces
 
@@ -53,6 +54,7 @@ class FrontierExplorer:
         self._finder = ViewpointFinder(self.config.viewpoint)
         self._visited = VisitedPlaces(self.config.visited_places)
         self._former_walls = FormerWalls(self.config.former_walls)
+        self._returns = Returns()
         self._task = Task.EXPLORE
         self._home: Pose | None = None
         self._target: Viewpoint | None = None
@@ -82,6 +84,8 @@ class FrontierExplorer:
             self._note_jump(driver.jump, pose_map)
         if driver.has_new_scan:
             self._visited.note(self._costmap, pose_map[:2])
+            if driver.newest_view is not None:
+                self._returns.note(self._costmap, driver.newest_view)
         if self.status != RUNNING or driver.is_looking:
             return driver.stand()
         if driver.is_recovering:
@@ -110,6 +114,7 @@ class FrontierExplorer:
             self._shift = 0.0
             self._visited = VisitedPlaces(self.config.visited_places)
             self._former_walls = FormerWalls(self.config.former_walls)
+            self._returns = Returns()
 
     def _must_decide(self, grid: OccupancyGrid, pose: Pose) -> bool:
         """Whether the way on is in question."""
@@ -139,7 +144,7 @@ class FrontierExplorer:
         target = self._target
         if target is None:
             return
-        self._costmap.glance(grid, pose[:2], self._changed_reach())
+        self._glance(grid, pose)
         left = gain_at(self._costmap, target.place, self.config.viewpoint)
         if left > self.config.phantom_share * target.gain:
             self._given_up.disappoint(target.frontier, NOTHING_NEW)
@@ -154,12 +159,17 @@ class FrontierExplorer:
         if now - self._glanced_at < self.config.glance_every or self._target is None:
             return False
         self._glanced_at = now
-        self._costmap.glance(grid, pose[:2], self._changed_reach())
+        self._glance(grid, pose)
         left = gain_at(self._costmap, self._target.place, self.config.viewpoint)
         return left < self.config.worth_left * self._target.gain
 
+    def _glance(self, grid: OccupancyGrid, pose: Pose) -> None:
+        self._costmap.glance(grid, pose[:2], self._changed_reach())
+        self._returns.mark(self._costmap)
+
     def _look(self, grid: OccupancyGrid, pose: Pose) -> None:
         self._costmap.refresh(grid, pose[:2], self._changed_reach())
+        self._returns.mark(self._costmap)
         self._former_walls.note(self._costmap, pose[:2])
         self._looked_at = self._driver.time
 

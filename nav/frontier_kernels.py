@@ -28,11 +28,11 @@ def mark_frontier(states: NDArray[np.int8]) -> NDArray[np.int8]:
 
 
 @njit(cache=True)
-def touches_occupied(states: NDArray[np.int8], row: int, column: int) -> bool:
-    """Whether one of a cell's eight neighbours is occupied."""
+def touches_occupied(states: NDArray[np.int8], row: int, column: int, reach: int = 1) -> bool:
+    """Whether a cell within ``reach`` rows and columns is occupied."""
     rows, columns = states.shape
-    for i in range(max(row - 1, 0), min(row + 2, rows)):
-        for j in range(max(column - 1, 0), min(column + 2, columns)):
+    for i in range(max(row - reach, 0), min(row + reach + 1, rows)):
+        for j in range(max(column - reach, 0), min(column + reach + 1, columns)):
             if states[i, j] == OCCUPIED:
                 return True
     return False

@@ -26,7 +26,9 @@ class ScanView:
     stamp: float
     """Time of its middle beam [s]."""
     points: NDArray[np.float64]
-    """Where its beams met something ``(n, 2)`` [m], each from its own pose."""
+    """Where its beams met something ``(n, 2)`` [m], each from its own pose, in their order."""
+    beams: NDArray[np.int64]
+    """Which beams these are ``(n,)``."""
     origin: NDArray[np.float64]
     """Where the sensor was at its middle beam ``(2,)`` [m]."""
     bearing: float
@@ -92,10 +94,12 @@ class ScanPoints:
             IN_THE_MAP, poses[beams], LIDAR_POSE_BASE, scan.angles[beams], ranges[beams]
         )
         self.points = points[ranges[beams] <= reach]
-        self.view = _view_of(scan, poses, points) if len(poses) > 1 else None
+        self.view = _view_of(scan, poses, points, beams) if len(poses) > 1 else None
 
 
-def _view_of(scan: LaserScan, poses: Pose, points: NDArray[np.float64]) -> ScanView:
+def _view_of(
+    scan: LaserScan, poses: Pose, points: NDArray[np.float64], beams: NDArray[np.int64]
+) -> ScanView:
     """The view of a scan of two beams or more, taken at poses ``(k, 3)``."""
     middle = len(poses) // 2
     directions = np.unwrap(poses[:, 2]) + LIDAR_POSE_BASE[2] + scan.angles
@@ -104,6 +108,7 @@ def _view_of(scan: LaserScan, poses: Pose, points: NDArray[np.float64]) -> ScanV
     return ScanView(
         stamp=float(scan.beam_stamps[middle]),
         points=points,
+        beams=beams,
         origin=compose(poses[middle], np.array(LIDAR_POSE_BASE))[:2],
         bearing=float(directions[0]),
         increment=float((directions[-1] - directions[0]) / (len(poses) - 1)),

@@ -55,7 +55,13 @@ def cheapest_view(
 
 @njit(cache=True)
 def expected_gain(
-    states: NDArray[np.int8], row: int, column: int, reach: float, depth: float, beams: int
+    states: NDArray[np.int8],
+    row: int,
+    column: int,
+    reach: float,
+    depth: float,
+    beams: int,
+    gap: int = 1,
 ) -> int:
     """How many unknown cells a lidar in a cell would see, each counted once.
 
@@ -77,7 +83,7 @@ def expected_gain(
             if state == OCCUPIED or into >= depth:
                 break
             if state == UNKNOWN:
-                if into == 0.0 and inside and touches_occupied(states, i, j):
+                if into == 0.0 and inside and touches_occupied(states, i, j, gap):
                     break
                 into += 1.0
                 if not seen[i - row + span, j - column + span]:

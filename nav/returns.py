@@ -1,0 +1,58 @@
+"""Remembers where the lidar met something, long before a mapper is sure of a wall there.
+
+A wall 3 m away returns beams 5 cm apart that scatter by centimetres, and one that the robot drives
+along returns them decimetres apart. A fine map stays unknown there for many scans, and what is
+unknown looks like a way on. Returns in the same planning cell in two scans say that it is none.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mapping.grid import OCCUPIED, UNKNOWN
+from nav.cell_memory import CellMemory
+from nav.costmap import Costmap
+from nav.returns_kernels import cells_between
+from nav.scan_points import ScanView
+
+NO_WAY_THROUGH = 0.25
+"""Between two neighbouring beams that met things so close together there is no way that the robot
+fits through with room to spare [m]."""
+
+
+class Returns:
+    """The planning cells that scans met something in, once and more often."""
+
+    def __init__(self) -> None:
+        self._once = CellMemory()
+        self._again = CellMemory()
+
+    def note(self, costmap: Costmap, view: ScanView) -> None:
+        """Remember where a scan met something; what lies outside the map is ignored."""
+        if costmap.states.size == 0:
+            return
+        self._follow(costmap)
+        rows, columns = self._cells(costmap, view).T
+        again = self._once.marks[rows, columns]
+        self._again.marks[rows[again], columns[again]] = True
+        self._once.marks[rows, columns] = True
+
+    def mark(self, costmap: Costmap) -> None:
+        """Take unknown cells with returns from two scans for occupied; clearances stay."""
+        self._follow(costmap)
+        costmap.states[self._again.marks & (costmap.states == UNKNOWN)] = OCCUPIED
+
+    def _cells(self, costmap: Costmap, view: ScanView) -> NDArray[np.int64]:
+        """The cells ``(n, 2)``, each once or more, that a scan met something in."""
+        cells = cells_between(
+            view.points,
+            view.beams,
+            len(view.ranges),
+            NO_WAY_THROUGH,
+            (float(costmap.origin[0]), float(costmap.origin[1]), costmap.resolution),
+        )
+        inside = np.all((cells >= 0) & (cells < costmap.states.shape), axis=1)
+        return np.asarray(cells[inside])
+
+    def _follow(self, costmap: Costmap) -> None:
+        self._once.follow(costmap)
+        self._again.follow(costmap)
