@@ -169,8 +169,8 @@ class FrontierExplorer:
 
     def _look(self, grid: OccupancyGrid, pose: Pose) -> None:
         self._costmap.refresh(grid, pose[:2], self._changed_reach())
-        self._returns.mark(self._costmap)
         self._former_walls.note(self._costmap, pose[:2])
+        self._returns.mark(self._costmap)  # after that: they are no walls that drift could move
         self._looked_at = self._driver.time
 
     def _changed_reach(self) -> float:

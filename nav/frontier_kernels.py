@@ -28,11 +28,11 @@ def mark_frontier(states: NDArray[np.int8]) -> NDArray[np.int8]:
 
 
 @njit(cache=True)
-def touches_occupied(states: NDArray[np.int8], row: int, column: int, reach: int = 1) -> bool:
-    """Whether a cell within ``reach`` rows and columns is occupied."""
+def touches_occupied(states: NDArray[np.int8], row: int, column: int) -> bool:
+    """Whether a cell or one of its eight neighbours is occupied."""
     rows, columns = states.shape
-    for i in range(max(row - reach, 0), min(row + reach + 1, rows)):
-        for j in range(max(column - reach, 0), min(column + reach + 1, columns)):
+    for i in range(max(row - 1, 0), min(row + 2, rows)):
+        for j in range(max(column - 1, 0), min(column + 2, columns)):
             if states[i, j] == OCCUPIED:
                 return True
     return False
@@ -55,7 +55,10 @@ def note_walls(
 def unmark_near_former_walls(
     marked: NDArray[np.int8], walls: NDArray[np.bool_], states: NDArray[np.int8], reach: int
 ) -> None:
-    """Unmark every cell with a wall that is occupied no more within ``reach`` cells."""
+    """Unmark every cell with a wall that is occupied no more within ``reach`` cells.
+
+    One that still touches an occupied cell has not moved: it has only been drawn thinner since.
+    """
     rows, columns = marked.shape
     for i in range(rows):
         for j in range(columns):
@@ -70,7 +73,7 @@ def _former_wall_near(
     rows, columns = walls.shape
     for i in range(max(row - reach, 0), min(row + reach + 1, rows)):
         for j in range(max(column - reach, 0), min(column + reach + 1, columns)):
-            if walls[i, j] and states[i, j] != OCCUPIED:
+            if walls[i, j] and not touches_occupied(states, i, j):
                 return True
     return False
 

@@ -40,8 +40,6 @@ class ViewpointConfig:
     """How far the lidar is counted on to see [m]; less than its limit, where beams are sparse."""
     gain_depth: float = 1.5
     """How far a beam is counted on to see into the unknown [m]: something may stand there."""
-    gap_cells: int = 1
-    """x"""
     gain_beams: int = 240
     """Beams cast to estimate what a viewpoint would show."""
     keep_beyond: float = 6.0
@@ -193,6 +191,5 @@ def _gain(costmap: Costmap, cell: tuple[int, int], config: ViewpointConfig) -> f
         config.gain_range / costmap.resolution,
         config.gain_depth / costmap.resolution,
         config.gain_beams,
-        config.gap_cells,
     )
     return float(cells * costmap.resolution**2)

@@ -83,7 +83,7 @@ def expected_gain(
             if state == OCCUPIED or into >= depth:
                 break
             if state == UNKNOWN:
-                if into == 0.0 and inside and touches_occupied(states, i, j, gap):
+                if into == 0.0 and inside and touches_occupied(states, i, j):
                     break
                 into += 1.0
                 if not seen[i - row + span, j - column + span]:
