@@ -89,13 +89,20 @@ class BurgerEnv(gym.Env[Observation, Action]):  # type: ignore[misc]  # mypy ski
     |---|---|---|
     | ``pose_world`` | (3,) float64 | true pose x, y, yaw of base_footprint [m, m, rad] |
     | ``velocity_base`` | (2,) float64 | true forward speed and turn rate [m/s, rad/s] |
-    | ``contacts`` | int | how often a part of the robot began to touch something but the floor |
+    | ``contacts`` | int | how often the robot ran into something, people among it |
+    | ``contacts_by_people`` | int | how often people ran into the robot |
+    | ``pedestrians`` | (n, 2) float64 | where the n people are, x, y in the world [m] |
+
+    A contact is a part of the robot beginning to touch something but the floor. It counts in
+    ``contacts`` if that stands still, or is a person whom the robot moved towards faster than 0.02
+    m/s at the place where they first touched; else it counts in ``contacts_by_people``.
 
     ## Start
 
     The robot stands at the plan's start pose, settled on its wheels, and stays there for 0.2 s
     while the lidar turns once, so that the first observation has a whole scan (and ``time`` 0.2).
-    Sensors draw new errors of their own at every reset. ``reset(options=...)`` takes:
+    Sensors draw new errors of their own at every reset, and random people new loops.
+    ``reset(options=...)`` takes:
 
     | option | meaning |
     |---|---|
@@ -104,7 +111,9 @@ class BurgerEnv(gym.Env[Observation, Action]):  # type: ignore[misc]  # mypy ski
 
     Args:
         world: Name of a built-in world, a file that ``envs.worlds.load_world`` reads, or a plan.
-        lidar: ``datasheet``, ``worst_case``, ``measured``, ``ideal``, or a ``LidarConfig``.
+        people: How many people walk there on random loops, besides those of the plan.
+        lidar: ``datasheet``, ``worst_case``, ``measured``, ``dropouts``, ``ideal``, or a
+            ``LidarConfig``.
         odometry: ``typical``, ``poor``, ``ideal``, ``truth``, or an ``OdometryConfig``.
         odometry_yaw: ``encoders`` or ``imu``: what the heading in odometry comes from; None leaves
             it to ``odometry``.
@@ -126,6 +135,7 @@ class BurgerEnv(gym.Env[Observation, Action]):  # type: ignore[misc]  # mypy ski
         self,
         world: str | Path | FloorPlan = "turtlebot3_world",
         *,
+        people: int = 0,
         lidar: str | LidarConfig = "datasheet",
         odometry: str | OdometryConfig = "typical",
         odometry_yaw: YawSource | None = None,
@@ -142,6 +152,7 @@ class BurgerEnv(gym.Env[Observation, Action]):  # type: ignore[misc]  # mypy ski
         self.action_space = _action_space()
         self.observation_space = _observation_space()
         self._camera = camera
+        self._people = people
         self._lidar, self._odometry, self._imu = lidar, odometry, imu
         self._simulation = self._simulate(world)
 
@@ -174,6 +185,14 @@ class BurgerEnv(gym.Env[Observation, Action]):  # type: ignore[misc]  # mypy ski
         self._simulation.command(float(action[0]), float(action[1]))
         return self._observe(self._simulation.advance()), 0.0, False, False, self._info()
 
+    def carry_off(self, pose: tuple[float, float, float]) -> None:
+        """Put the robot down elsewhere without its sensors noticing; see ``Simulation``.
+
+        Raises:
+            TestbedError: It has no room there.
+        """
+        self._simulation.carry_off(_checked_start(self.plan, pose))
+
     def render(self) -> NDArray[np.uint8] | None:
         """The picture of this moment ``(480, 640, 3)``, or None without ``render_mode``."""
         return self._simulation.render(self._camera) if self.render_mode else None
@@ -185,7 +204,13 @@ class BurgerEnv(gym.Env[Observation, Action]):  # type: ignore[misc]  # mypy ski
     def _simulate(self, world: str | Path | FloorPlan) -> Simulation:
         """A simulation of a world with this environment's sensors."""
         plan = world if isinstance(world, FloorPlan) else load_world(world)
-        return Simulation(plan, lidar=self._lidar, odometry=self._odometry, imu=self._imu)
+        return Simulation(
+            plan,
+            people=self._people,
+            lidar=self._lidar,
+            odometry=self._odometry,
+            imu=self._imu,
+        )
 
     def _observe(self, batch: SensorBatch) -> Observation:
         """The observation after a batch of messages; the newest scan stays until the next."""
@@ -206,6 +231,8 @@ class BurgerEnv(gym.Env[Observation, Action]):  # type: ignore[misc]  # mypy ski
             "pose_world": self._simulation.pose_world,
             "velocity_base": np.array(self._simulation.velocity_base),
             "contacts": self._simulation.contacts,
+            "contacts_by_people": self._simulation.contacts_by_people,
+            "pedestrians": self._simulation.pedestrians,
         }
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from envs.floor_plan import FloorPlan
-from envs.scene import build_scene
+from envs.scene import LEG_GROUP, build_scene
 from mapping.errors import TestbedError
 
 _MAX_GEOMS = 10_000
@@ -24,13 +24,19 @@ class SceneCamera:
     window there, whatever is set after its import. Nothing is opened before the first picture.
     """
 
-    def __init__(self, plan: FloorPlan) -> None:
+    def __init__(self, plan: FloorPlan, people: int | None = None) -> None:
         self._plan = plan
+        self._people = people
         self._model: mujoco.MjModel | None = None
         self._size: tuple[int, int] | None = None
 
     def picture(
-        self, qpos: NDArray[np.float64], camera: str, width: int, height: int
+        self,
+        qpos: NDArray[np.float64],
+        camera: str,
+        width: int,
+        height: int,
+        mocap_pos: NDArray[np.float64] | None = None,
     ) -> NDArray[np.uint8]:
         """A picture ``(height, width, 3)``, RGB.
 
@@ -39,19 +45,23 @@ class SceneCamera:
             camera: ``chase`` behind the robot, ``portrait`` before it, ``top`` over the whole plan.
             width: Columns of the picture, 1920 at most.
             height: Rows of the picture, 1440 at most.
+            mocap_pos: Where the moved bodies are, people's legs; None leaves them at the origin.
 
         Raises:
             TestbedError: There is no such camera, the size is not drawable, or there is no OpenGL.
         """
         if self._model is None:
-            self._model = build_scene(self._plan, dressed=True)
+            self._model = build_scene(self._plan, people=self._people, dressed=True)
             self._data = mujoco.MjData(self._model)
             self._scene = mujoco.MjvScene(self._model, _MAX_GEOMS)
         view = _view(self._model, camera, width, height)
         self._open(width, height)
         self._data.qpos[:] = qpos
+        if mocap_pos is not None:
+            self._data.mocap_pos[:] = mocap_pos
         mujoco.mj_forward(self._model, self._data)
         options, all_kinds = mujoco.MjvOption(), mujoco.mjtCatBit.mjCAT_ALL.value
+        options.geomgroup[LEG_GROUP] = 1  # MuJoCo hides the groups from 3 on
         mujoco.mjv_updateScene(self._model, self._data, options, None, view, all_kinds, self._scene)
         frame, pixels = mujoco.MjrRect(0, 0, width, height), np.empty((height, width, 3), np.uint8)
         mujoco.mjr_render(frame, self._scene, self._drawer)

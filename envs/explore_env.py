@@ -51,8 +51,8 @@ class ExploreEnv(gym.Env[Observation, Action]):  # type: ignore[misc]  # mypy sk
 
     The sum of ``reward_area`` (square metres of true floor newly free in the map; wiping them out
     again costs as much), ``reward_done`` (10 at 99 % coverage) and ``reward_contact`` (-10 on
-    touching anything), each told in ``info``. Both of the latter terminate; ``TimeLimit`` truncates
-    after 10 minutes by default.
+    running into anything), each told in ``info``. Both of the latter terminate; ``TimeLimit``
+    truncates after 10 minutes by default.
 
     ## Info and options
 

@@ -7,6 +7,8 @@ from numpy.typing import NDArray
 from envs.burger_constants import LIDAR_POSITION, STEPS_PER_SECOND
 from envs.lidar_kernels import block_rays, shift_origins
 from envs.lidar_noise import LidarConfig, draw_unit, report
+from envs.pedestrian_kernels import stop_at_legs
+from envs.pedestrians import LEG_RADIUS, Feet
 from envs.scene import SOLID_GROUP
 from mapping.burger import LIDAR_BEAMS, LIDAR_SCAN_TIME
 
@@ -29,8 +31,12 @@ class Lidar:
     apart. On flat walls that is exact; what remains is an edge within the 2.2 mm that the sensor
     moves in half a block at full speed, where a beam may see the one side for the other.
 
+    People's legs move too fast for that: 7 cm in a block. They are cylinders, so each beam is cut
+    off at them by arithmetic, where they are at its own time; taken to move evenly between the same
+    three states they are within 0.3 mm of the truth at 1.2 m/s, and 0.7 mm at 2 m/s.
+
     Beams lie in the plane of the sensor, which pitches with the robot when it speeds up or brakes.
-    They meet solids only, never the floor or the robot.
+    They meet solids and legs only, never the floor or the robot.
     """
 
     def __init__(self, model: mujoco.MjModel, config: LidarConfig) -> None:
@@ -55,7 +61,7 @@ class Lidar:
         self._block = 0
 
     def cast_block(
-        self, data: mujoco.MjData, base_states: NDArray[np.float64]
+        self, data: mujoco.MjData, base_states: NDArray[np.float64], feet: Feet | None = None
     ) -> NDArray[np.float32] | None:
         """Cast the next block of beams; the world is as it is at the block's end.
 
@@ -63,6 +69,7 @@ class Lidar:
             data: State of the world, for what stands in it.
             base_states: Position and quaternion (w, x, y, z) of base_link at the block's start,
                 middle and end ``(3, 7)``.
+            feet: Where people's legs are at the same times ``(3, m, 2)`` [m], if there are any.
 
         Returns:
             The ranges ``(360,)`` as messages.LaserScan has them if this block completed a turn,
@@ -70,7 +77,7 @@ class Lidar:
         """
         first = self._block * BLOCK_BEAMS
         distances = self._distances[first : first + BLOCK_BEAMS]
-        self._cast(data, base_states, self._beams[first : first + BLOCK_BEAMS], distances)
+        self._cast(data, base_states, feet, self._beams[first : first + BLOCK_BEAMS], distances)
         self._block = (self._block + 1) % BLOCKS
         if self._block:
             return None
@@ -80,6 +87,7 @@ class Lidar:
         self,
         data: mujoco.MjData,
         base_states: NDArray[np.float64],
+        feet: Feet | None,
         beams: NDArray[np.float64],
         distances: NDArray[np.float64],
     ) -> None:
@@ -100,3 +108,5 @@ class Lidar:
             self.config.cast_range,
         )
         shift_origins(distances, self._normals, self._directions, self._shifts)
+        if feet is not None:
+            stop_at_legs(distances, origin, self._directions, self._shifts, feet, LEG_RADIUS)

@@ -1,4 +1,4 @@
-"""Point-goal navigation: drive to a random place without touching anything."""
+"""Point-goal navigation: drive to a random place without hitting anything."""
 
 from pathlib import Path
 from typing import Any, ClassVar
@@ -45,7 +45,7 @@ class NavigateEnv(gym.Env[Observation, Action]):  # type: ignore[misc]  # mypy s
     ## Reward, termination, truncation
 
     The sum of ``reward_progress`` (true metres nearer to the goal), ``reward_goal`` (10 on arrival
-    within 0.3 m) and ``reward_contact`` (-10 on touching anything), each told in ``info``. Arrival
+    within 0.3 m) and ``reward_contact`` (-10 on hitting anything), each told in ``info``. Arrival
     and contact terminate; ``TimeLimit`` truncates after 60 s by default.
 
     ## Info and options

@@ -11,6 +11,7 @@ from matplotlib.patches import Polygon as PolygonPatch
 
 from envs.floor_plan import FloorPlan, Part, Polygon
 from envs.floor_space import floor_space
+from envs.pedestrians import HIP_WIDTH, positions_at
 from envs.solids import Disc
 from mapping.burger import ROBOT_RADIUS
 
@@ -22,6 +23,9 @@ _FLOOR_COLOUR, _GROUND_COLOUR = "#fbf7ec", "#d9dde3"
 _ROBOT_COLOUR = "#d55e00"
 """Vermilion of the palette of Okabe and Ito (2008), which colour-blind readers can tell."""
 
+_PEOPLE_COLOUR = "#0072b2"
+"""Blue of the same palette."""
+
 _ARROW_RADII = 4.0
 """Length of the arrow of the start pose, in robot radii."""
 
@@ -30,8 +34,9 @@ def draw_plan(plan: FloorPlan, ax: Axes) -> None:
     """Draw a floor plan into axes, in metres, with equal aspect.
 
     Walls and polygons are near black, furniture grey, the floor that the start is joined to light
-    and everything else pale grey. The title tells the name, the floor's area and how many solids
-    there are. The start is an arrow from a circle of the robot's own radius.
+    and everything else pale grey. Ways of people are dashed, with a dot where each is at time 0.
+    The title tells the name, the floor's area and how many solids there are. The start is an arrow
+    from a circle of the robot's own radius.
     """
     space = floor_space(plan, resolution=FLOOR_RESOLUTION)
     ax.set_facecolor(_GROUND_COLOUR)
@@ -44,6 +49,7 @@ def draw_plan(plan: FloorPlan, ax: Axes) -> None:
         zorder=0,
     )
     _draw_solids(plan, ax)
+    _draw_people(plan, ax)
     _draw_start(plan, ax)
     left, right, bottom, top = plan.bounds
     margin = 0.03 * max(right - left, top - bottom)
@@ -81,6 +87,16 @@ def _outlines(part: Part) -> list[Patch]:
         else PolygonPatch(solid.vertices, closed=True)
         for solid in part.solids()
     ]
+
+
+def _draw_people(plan: FloorPlan, ax: Axes) -> None:
+    """Everybody's round as a dashed line, and where they are at time 0."""
+    for person in plan.pedestrians:
+        ax.plot(*person.laid_out()[0].T, "--", color=_PEOPLE_COLOUR, linewidth=1.2, zorder=3)
+    for person, (x, y) in zip(plan.pedestrians, positions_at(plan.pedestrians, 0.0), strict=True):
+        ax.add_patch(Circle((x, y), HIP_WIDTH, color=_PEOPLE_COLOUR, zorder=3))
+        beside, speed = (x + 1.5 * HIP_WIDTH, y), f"{person.speed:g} m/s"
+        ax.annotate(speed, beside, color=_PEOPLE_COLOUR, fontsize="small", zorder=4)
 
 
 def _draw_start(plan: FloorPlan, ax: Axes) -> None:

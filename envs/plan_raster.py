@@ -43,9 +43,14 @@ def rasterize(
 
 
 def rasterize_solids(
-    solids: Sequence[Solid], *, resolution: float, origin: Point, shape: tuple[int, int]
+    solids: Sequence[Solid],
+    *,
+    resolution: float,
+    origin: Point,
+    shape: tuple[int, int],
+    slack: float = SEAM,
 ) -> NDArray[np.bool_]:
-    """As ``rasterize``, for solids that are no plan yet."""
+    """As ``rasterize``, for solids that are no plan yet; ``slack`` in place of ``SEAM``."""
     _check_resolution(resolution)
     if min(shape) < 1 or shape[0] * shape[1] > MAX_CELLS:
         raise TestbedError(f"raster: {shape[0]} x {shape[1]} cells; must be 1 to {MAX_CELLS} cells")
@@ -54,10 +59,10 @@ def rasterize_solids(
     prisms = [solid.vertices for solid in solids if isinstance(solid, Prism)]
     if prisms:
         firsts = np.cumsum([0, *(len(vertices) for vertices in prisms)], dtype=np.int64)
-        fill_prisms(raster, left, bottom, resolution, np.concatenate(prisms), firsts, SEAM)
+        fill_prisms(raster, left, bottom, resolution, np.concatenate(prisms), firsts, slack)
     discs = [(*solid.center, solid.radius) for solid in solids if isinstance(solid, Disc)]
     if discs:
-        fill_discs(raster, left, bottom, resolution, np.array(discs, dtype=np.float64), SEAM)
+        fill_discs(raster, left, bottom, resolution, np.array(discs, dtype=np.float64), slack)
     return raster
 
 

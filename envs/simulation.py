@@ -16,13 +16,16 @@ from envs.burger_constants import (
     TIMESTEP,
 )
 from envs.camera import SceneCamera
+from envs.contact_counter import ContactCounter
 from envs.drive import wheel_speeds
 from envs.floor_plan import FloorPlan
 from envs.imu import IMU_PRESETS, ImuConfig, InertialUnit, yaw_of
 from envs.lidar import BLOCK_STEPS, Lidar
 from envs.lidar_noise import LIDAR_PRESETS, LidarConfig
-from envs.scene import FLOOR, build_scene, place, planar_pose, planar_velocity
+from envs.random_pedestrians import check_people, random_pedestrians
+from envs.scene import build_scene, place, planar_pose, planar_velocity
 from envs.schedule import IMU_STEPS, is_odometry_step, next_event
+from envs.walkers import Walkers
 from envs.wheel_encoders import (
     ODOMETRY_PRESETS,
     OdometryConfig,
@@ -40,9 +43,6 @@ SETTLE_STEPS = STEPS_PER_SECOND // 2
 _TIMEOUT_STEPS = round(COMMAND_TIMEOUT * STEPS_PER_SECOND)
 _BLOCK_STATES = BLOCK_STEPS // IMU_STEPS + 1
 """States that the lidar needs to know how the base moved during a block."""
-
-_APART_STEPS = STEPS_PER_SECOND // 2
-"""How long a robot part and a thing must be apart before they can touch anew [steps]: 0.5 s."""
 
 Config = TypeVar("Config")
 
@@ -65,33 +65,39 @@ class Simulation:
     """A Burger in a floor plan, stepped by 2 ms, with its sensors.
 
     Args:
-        plan: Where it drives.
+        plan: Where it drives, and who walks there.
+        people: How many more people walk there, on random loops that each reset draws anew.
         lidar: Name of a preset of ``lidar_noise`` or a configuration.
         odometry: Name of a preset of ``wheel_encoders`` or a configuration.
         imu: Name of a preset of ``imu`` or a configuration.
         rng: Seed or generator; each sensor gets a generator of its own, spawned from it.
 
     Raises:
-        TestbedError: A preset does not exist.
+        TestbedError: A preset does not exist, or there is no room for so many people.
     """
 
     def __init__(
         self,
         plan: FloorPlan,
         *,
+        people: int = 0,
         lidar: str | LidarConfig = "datasheet",
         odometry: str | OdometryConfig = "typical",
         imu: str | ImuConfig = "typical",
         rng: int | np.random.Generator | None = None,
     ) -> None:
         self.plan = plan
-        self.model = build_scene(plan)
+        check_people(people)
+        self._people = people
+        walking = len(plan.pedestrians) + people
+        self.model = build_scene(plan, people=walking)
         self.data = mujoco.MjData(self.model)
+        self._walkers = Walkers(self.model, walking)
+        self._contacts = ContactCounter(self.model, self._walkers.geoms)
         self._lidar = Lidar(self.model, preset("lidar", lidar, LIDAR_PRESETS))
         self._encoders = WheelEncoders(preset("odometry", odometry, ODOMETRY_PRESETS))
         self._imu = InertialUnit(preset("imu", imu, IMU_PRESETS))
-        self._camera = SceneCamera(plan)
-        self._floor = self.model.geom(FLOOR).id
+        self._camera = SceneCamera(plan, walking)
         self._rng = np.random.default_rng(rng)
         self.reset()
 
@@ -112,12 +118,21 @@ class Simulation:
 
     @property
     def contacts(self) -> int:
-        """How often a part of the robot began to touch something that is not the floor.
+        """How often the robot ran into something that is not the floor, people among it.
 
-        Looked at every 10 ms. Each pair of a robot part and a thing counts for itself, and counts
-        again when it had been apart for half a second: a push against a wall chatters.
+        Looked at every 10 ms, and every 2 ms with people near; ``ContactCounter`` tells how.
         """
-        return self._contacts
+        return self._contacts.own
+
+    @property
+    def contacts_by_people(self) -> int:
+        """How often a person ran into the robot, which stood or moved away."""
+        return self._contacts.by_people
+
+    @property
+    def pedestrians(self) -> NDArray[np.float64]:
+        """Where the people are ``(n, 2)`` [m], in the world: the plan's, then the random ones."""
+        return self._walkers.positions(self.time)
 
     def reset(
         self,
@@ -126,14 +141,16 @@ class Simulation:
     ) -> None:
         """Put the robot at rest at a pose in the world (the plan's start), with new sensors.
 
-        It settles on its wheels; then time, odometry and contacts start from zero.
+        It settles on its wheels while nobody walks; then time, odometry and contacts start from
+        zero.
         """
         self._rng = self._rng if rng is None else rng
-        place(self.model, self.data, np.array(self.plan.start if start is None else start))
-        mujoco.mj_step(self.model, self.data, nstep=SETTLE_STEPS)
+        start = self.plan.start if start is None else start
+        place(self.model, self.data, np.array(start))
         self._step, self._command_step = 0, 0
-        self._contacts = 0
-        self._touched: dict[tuple[int, int], int] = {}
+        self._let_people_walk(start)
+        mujoco.mj_step(self.model, self.data, nstep=SETTLE_STEPS)
+        self._contacts.reset()
         self._positions = [self.data.qpos[:7].copy()]
         self._velocities = [self.data.qvel[:6].copy()]
         lidar_rng, encoders_rng, imu_rng = self._rng.spawn(3)
@@ -141,6 +158,20 @@ class Simulation:
         self._encoders.reset(encoders_rng, _wheel_angles(self.data.qpos), self.pose_world)
         self._imu.reset(imu_rng)
         self._imu_yaw = 0.0
+
+    def carry_off(self, pose: tuple[float, float, float]) -> None:
+        """Put the robot down at rest at another pose in the world: the kidnapped robot.
+
+        Time, odometry and IMU go on as if nothing had been: neither wheels nor gyroscope notice.
+        """
+        wheel_angles = self.data.qpos[7:9].copy()
+        place(self.model, self.data, np.array(pose))
+        self.data.qpos[7:9] = wheel_angles
+        if len(self._walkers):
+            self._walkers.stand_up(self.data, self.time)
+        mujoco.mj_step(self.model, self.data, nstep=SETTLE_STEPS)
+        self._positions = [self.data.qpos[:7].copy()]
+        self._velocities = [self.data.qvel[:6].copy()]
 
     def command(self, linear: float, angular: float) -> None:
         """Drive at these speeds [m/s, rad/s] from now on, for 0.5 s at most.
@@ -162,8 +193,12 @@ class Simulation:
         self._scan: tuple[float, NDArray[np.float32]] | None = None
         while self._step < end:
             event = min(next_event(self._step), end)
-            mujoco.mj_step(self.model, self.data, nstep=event - self._step)
-            self._step = event
+            if len(self._walkers):
+                self._step_among_people(event)
+            else:
+                mujoco.mj_step(self.model, self.data, nstep=event - self._step)
+                self._step = event
+                self._contacts.count(self.data, self._step, self.data.qpos, self.data.qvel)
             self._observe()
         return self._collect(begin)
 
@@ -175,35 +210,55 @@ class Simulation:
         Raises:
             TestbedError: There is no such camera, the size is not drawable, or there is no OpenGL.
         """
-        return self._camera.picture(self.data.qpos, camera, width, height)
+        return self._camera.picture(self.data.qpos, camera, width, height, self.data.mocap_pos)
 
     def close(self) -> None:
         """Give the OpenGL context back; may be called again."""
         self._camera.close()
 
+    def _let_people_walk(self, start: tuple[float, float, float]) -> None:
+        """Put everybody where they are at time 0; random people get new loops."""
+        people = self.plan.pedestrians
+        if self._people > 0:
+            (rng,) = self._rng.spawn(1)
+            people += random_pedestrians(self.plan, self._people, rng, start=start)
+        self._walkers.reset(people)
+        if people:
+            self._walkers.stand_up(self.data, 0.0)
+
+    def _step_among_people(self, event: int) -> None:
+        """Step up to an event, the legs moving with every step when one is near the robot."""
+        while self._step < event:
+            near = self._walkers.move(self.data, self.time)
+            steps = 1 if near else event - self._step
+            position, velocity = self.data.qpos[:2].copy(), self.data.qvel[:6].copy()
+            mujoco.mj_step(self.model, self.data, nstep=steps)
+            self._step += steps
+            self._contacts.count(self.data, self._step, position, velocity)
+
     def _observe(self) -> None:
         """Read what is due at this step."""
         if self._step - self._command_step >= _TIMEOUT_STEPS:
             self.data.ctrl[:] = 0.0
-        self._count_contacts()
         if self._step % IMU_STEPS == 0:
             self._positions.append(self.data.qpos[:7].copy())
             self._velocities.append(self.data.qvel[:6].copy())
         if self._step % BLOCK_STEPS == 0:
-            ranges = self._lidar.cast_block(self.data, np.array(self._positions[-_BLOCK_STATES:]))
+            base_states = np.array(self._positions[-_BLOCK_STATES:])
+            ranges = self._lidar.cast_block(self.data, base_states, self._feet_of_block())
             if ranges is not None:
                 self._scan = (self.time - LIDAR_SCAN_TIME, ranges)
         if is_odometry_step(self._step):
             self._wheels.append((self._step, self.data.qpos[:9].copy(), self.data.qvel[:6].copy()))
 
-    def _count_contacts(self) -> None:
-        """Count the pairs of robot part and thing that touch now and did not lately."""
-        for first, second in self.data.contact.geom.tolist():
-            if self._floor in (first, second):
-                continue
-            last = self._touched.get((first, second), -_APART_STEPS - 1)
-            self._contacts += self._step - last > _APART_STEPS
-            self._touched[first, second] = self._step
+    def _feet_of_block(self) -> NDArray[np.float64] | None:
+        """Where the legs were at the times of the block's states ``(3, m, 2)`` [m], if any."""
+        if not len(self._walkers):
+            return None
+        first = self._step - BLOCK_STEPS
+        return self._walkers.feet(
+            [step * TIMESTEP for step in range(first, self._step + 1, IMU_STEPS)]
+        )
 
     def _collect(self, begin: int) -> SensorBatch:
         """Make messages of what was read since step ``begin``."""

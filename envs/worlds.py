@@ -6,7 +6,9 @@ from pathlib import Path
 from assets import ROOT
 from envs.floor_plan import FloorPlan
 from envs.house_expo import read_house_expo
+from envs.plan_generator import random_plan
 from envs.plan_yaml import load_yaml, read_plan
+from envs.random_world import is_random_world, parse_random_world
 from envs.raster_plan import read_map_plan
 from envs.text_maze import read_text_maze
 from mapping.errors import TestbedError
@@ -15,13 +17,13 @@ WORLDS = Path(str(ROOT)) / "worlds"
 """Folder of the built-in worlds, one floor plan in YAML each."""
 
 _ALLOWED = (
-    "a built-in world or a file: floor plan .yaml, map_server .yaml, HouseExpo .json, "
-    "text maze .txt"
+    "a built-in world, random:SEED or a file: floor plan .yaml, map_server .yaml, "
+    "HouseExpo .json, text maze .txt"
 )
 
 
 def load_world(name_or_path: str | Path) -> FloorPlan:
-    """The floor plan of a built-in world or of a file.
+    """The floor plan of a built-in world, of a file or drawn from a seed, as ``random:7``.
 
     A file is read by what it is: ``.yaml`` or ``.yml`` as a map_server map when it has the key
     ``image`` and as a floor plan otherwise, ``.json`` as HouseExpo, ``.txt`` as a text maze.
@@ -30,6 +32,8 @@ def load_world(name_or_path: str | Path) -> FloorPlan:
     Raises:
         TestbedError: There is no such world, or its file cannot be used.
     """
+    if is_random_world(str(name_or_path)):
+        return random_plan(parse_random_world(str(name_or_path)))
     if (WORLDS / f"{name_or_path}.yaml").is_file() and _is_name(name_or_path):
         return read_plan(WORLDS / f"{name_or_path}.yaml")
     path = Path(name_or_path)
@@ -51,6 +55,17 @@ def built_in_worlds() -> dict[str, str]:
         path.stem: str(load_yaml(path).get("description", ""))
         for path in sorted(WORLDS.glob("*.yaml"))
     }
+
+
+def world_label(name_or_path: str | Path) -> str:
+    """What to call a world in the name of a file: its own name, or its file's without the ending.
+
+    Raises:
+        TestbedError: If it asks for a random world in a way that cannot be read.
+    """
+    if is_random_world(str(name_or_path)):
+        return parse_random_world(str(name_or_path)).name
+    return Path(name_or_path).stem
 
 
 def _is_name(name_or_path: str | Path) -> bool:

@@ -25,6 +25,7 @@ ROOM = FloorPlan(
     walls=(Wall(points=((-1.5, -1.5), (3.0, -1.5), (3.0, 3.0), (-1.5, 3.0)), closed=True),),
     boxes=(Box(center=(1.2, 1.3), size=(0.4, 0.2)),),
 )
+INFO_KEYS = {"pose_world", "velocity_base", "contacts", "contacts_by_people", "pedestrians"}
 STRAIGHT = np.array((0.2, 0.0), dtype=np.float32)
 
 
@@ -95,7 +96,7 @@ def test_observations_stay_in_their_space_whatever_the_robot_does(
         observation, reward, terminated, truncated, info = env.step(np.array(action, np.float32))
         assert observation in env.observation_space
         assert (reward, terminated, truncated) == (0.0, False, False)
-        assert set(info) == keys == {"pose_world", "velocity_base", "contacts"}
+        assert set(info) == keys == INFO_KEYS
 
 
 def test_the_first_observation_has_a_whole_scan_taken_standing_at_the_start() -> None:

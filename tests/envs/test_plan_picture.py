@@ -4,6 +4,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from envs.floor_plan import Box, FloorPlan
+from envs.pedestrians import positions_at
 from envs.plan_picture import draw_plan
 from envs.worlds import load_world
 
@@ -39,6 +40,15 @@ def test_the_robot_is_drawn_where_it_starts():
     across, up = axes.transData.transform(plan.start[:2])
     red, _, blue = pixels[pixels.shape[0] - 1 - round(up), round(across)]
     assert red > blue + 100
+
+
+def test_people_are_drawn_blue_where_they_are_at_time_0():
+    plan = load_world("pedestrian_hall")
+    axes, pixels = drawn(plan)
+    for place in positions_at(plan.pedestrians, 0.0):
+        across, up = axes.transData.transform(place)
+        red, _, blue = pixels[pixels.shape[0] - 1 - round(up), round(across)]
+        assert int(blue) > int(red) + 100
 
 
 @pytest.mark.parametrize("start", [(0.0, 0.0, 0.0), (30.0, 30.0, 0.0)])

@@ -73,6 +73,7 @@ def test_the_example_in_the_docstring_reads(tmp_path):
     plan = read_plan(path)
     assert plan.boxes[0].yaw == pytest.approx(math.radians(30.0))
     assert [len(parts) for parts in plan.kinds().values()] == [1, 1, 1, 1]
+    assert len(plan.pedestrians) == 1
 
 
 @pytest.mark.parametrize(

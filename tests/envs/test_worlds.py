@@ -16,11 +16,15 @@ from mapping.io.map_server import MapFile, write_map
 
 FLOOR_AREAS = {
     "apartment": 133.1,
+    "cluttered_office": 67.75,
     "corridor_loop": 64.3,
+    "cul_de_sac": 91.8,
     "empty_room": 36.0,
     "lim_hallway": 150.4,
     "lim_room": 24.9,
+    "long_corridor": 72.0,
     "narrow_door": 29.7,
+    "pedestrian_hall": 62.1,
     "turtlebot3_house": 112.7,
     "turtlebot3_world": 20.57,
 }
@@ -34,7 +38,7 @@ SURELY_CLOSED = 0.20
 """A gap narrower than this stops the robot [m]."""
 
 
-def test_there_are_eight_worlds_each_with_a_line_about_it():
+def test_there_are_twelve_worlds_each_with_a_line_about_it():
     worlds = built_in_worlds()
     assert set(worlds) == set(FLOOR_AREAS)
     assert all(worlds.values())
@@ -137,7 +141,7 @@ def test_each_kind_of_file_is_read_as_what_it_is(tmp_path):
     [
         ("lim_rom", "did you mean lim_room?"),
         ("Apartment", "did you mean apartment?"),
-        ("xyz", "built in are apartment, corridor_loop"),
+        ("xyz", "built in are apartment, cluttered_office"),
         ("no/such/file.yaml", "no such world or file"),
         ("", "built in are"),
     ],
