@@ -17,6 +17,7 @@ def min_clearance(
 ) -> float | None:
     """The least distance [m] between the robot's outline and any solid, over all poses.
 
+    People are no solids: they come as near as they please, and ``contacts`` tells who touched whom.
     Exact while nothing overlaps; 0 when a corner of one lies in the other.
 
     Args:

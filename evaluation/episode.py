@@ -25,7 +25,7 @@ from mapping.pose_history import PoseHistory
 from mapping.slam.keyframe_pose_graph import pose_graph_of
 from mapping.truth import TruthMap
 from nav.agent import MappingAgent
-from nav.navigator import RUNNING, DroppedFrontier
+from nav.navigator import RUNNING, DroppedFrontier, Navigator
 from nav.navigators import make_navigator
 from nav.route import parse_route
 
@@ -45,7 +45,8 @@ class EpisodeConfig:
     mapper: str = "graph"
     """graph, scan_match, gmapping, ogm or occgridmapp."""
     navigator: str = "frontier"
-    """frontier, reactive, or waypoints: through given places."""
+    """frontier; nearest, explore_lite or gain_cost: the same with a rule to compare with; reactive;
+    or waypoints: through given places."""
     waypoints: str = ""
     """Places for the navigator waypoints: 'x,y x,y ...' in metres, or the name of a route of the
     world, such as there_and_back in lim_hallway."""
@@ -57,7 +58,10 @@ class EpisodeConfig:
     imu: str = "typical"
     """IMU errors: typical, drifting (a gyroscope zeroed in whole steps) or ideal."""
     lidar: str = "datasheet"
-    """Lidar noise: datasheet, worst_case, measured or ideal."""
+    """Lidar noise: datasheet, worst_case, measured, ideal, or dropouts: a tenth of all beams
+    fails."""
+    people: int = 0
+    """So many people walk on random loops, besides those of the world."""
     resolution: float | None = None
     """Edge of a map cell [m]; None takes the mapper's own: 1 cm, or 5 cm for gmapping."""
     seed: int = 0
@@ -90,6 +94,9 @@ class Episode:
     wall_time: float
     """Wall time of the loop [s], without set-up, scoring and showing."""
     contacts: int
+    """How often the robot ran into something, people among it."""
+    contacts_by_people: int
+    """How often people ran into the robot."""
     coverage_times: NDArray[np.float64]
     """When coverage was measured ``(n,)`` [s]."""
     coverages: NDArray[np.float64]
@@ -143,10 +150,9 @@ def run_episode(
     """
     plan = load_world(config.world) if plan is None else plan
     agent = make_agent(config, plan)
-    environment = _make_environment(config, plan)
+    environment = make_environment(config, plan)
     try:
-        truth = truth_of_plan(plan, resolution=agent.mapper.grid.resolution)
-        return _drive(config, plan, truth, agent, environment, on_progress, recorder)
+        return drive_episode(config, plan, agent, environment, on_progress, recorder)
     finally:
         environment.close()
 
@@ -159,7 +165,7 @@ def check_episode(config: EpisodeConfig) -> None:
     """
     plan = load_world(config.world)
     make_agent(config, plan)
-    _make_environment(config, plan).close()
+    make_environment(config, plan).close()
 
 
 def make_agent(config: EpisodeConfig, plan: FloorPlan) -> MappingAgent:
@@ -169,13 +175,20 @@ def make_agent(config: EpisodeConfig, plan: FloorPlan) -> MappingAgent:
         start_pose_map=plan.start,
         resolution=config.resolution,
     )
-    return MappingAgent(mapper, make_navigator(config.navigator, _places(config, plan)))
+    return MappingAgent(mapper, navigator_of(config, plan))
 
 
-def _make_environment(config: EpisodeConfig, plan: FloorPlan) -> gymnasium.Env[Any, Any]:
+def navigator_of(config: EpisodeConfig, plan: FloorPlan) -> Navigator:
+    """A fresh navigator that a config names."""
+    return make_navigator(config.navigator, _places(config, plan))
+
+
+def make_environment(config: EpisodeConfig, plan: FloorPlan) -> gymnasium.Env[Any, Any]:
+    """The environment that a config describes; close it after use."""
     return gymnasium.make(
         ENVIRONMENT,
         world=plan,
+        people=config.people,
         lidar=config.lidar,
         odometry=config.odometry,
         odometry_yaw=config.odometry_yaw,
@@ -199,15 +212,16 @@ def _places(config: EpisodeConfig, plan: FloorPlan) -> ArrayLike | None:
     return parse_route(config.waypoints)
 
 
-def _drive(
+def drive_episode(
     config: EpisodeConfig,
     plan: FloorPlan,
-    truth: TruthMap,
     agent: MappingAgent,
     environment: gymnasium.Env[Any, Any],
-    on_progress: Callable[[Progress], None] | None,
-    recorder: Recorder | None,
+    on_progress: Callable[[Progress], None] | None = None,
+    recorder: Recorder | None = None,
 ) -> Episode:
+    """Let an agent drive an environment to the end, as ``run_episode`` does with a config's own."""
+    truth = truth_of_plan(plan, resolution=agent.mapper.grid.resolution)
     meter = CoverageMeter(truth)
     track = Track()
     coverages: list[tuple[float, float]] = []
@@ -251,6 +265,7 @@ def _drive(
         stop_reason=stop_reason,
         wall_time=wall_time,
         contacts=int(info["contacts"]),
+        contacts_by_people=int(info["contacts_by_people"]),
         coverage_times=times,
         coverages=values,
         grid=agent.mapper.grid,

@@ -15,7 +15,7 @@ from numba.core.dispatcher import Dispatcher
 from mapping.deskew_kernels import interpolate
 from mapping.io.atomic import write_atomically
 
-PACKAGES = ("mapping", "nav", "envs")
+PACKAGES = ("mapping", "nav", "envs", "evaluation")
 
 ROOT = Path(__file__).resolve().parents[1]
 

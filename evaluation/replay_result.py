@@ -7,9 +7,11 @@ import numpy as np
 
 from envs.truth import truth_of_plan
 from evaluation.clearance import min_clearance
+from evaluation.map_extent import map_length_error
 from evaluation.replay import Replay
 from evaluation.result import map_scores, peak_rss_mb, percentile_ms, trajectory_scores
 from mapping.compare import score_map
+from mapping.ghosts import ghost_area
 from mapping.relations import score_relations
 from mapping.trajectory import path_length
 from mapping.truth import TruthMap
@@ -27,7 +29,10 @@ def truth_of(replay: Replay) -> TruthMap | None:
 
 
 def result_of_replay(
-    replay: Replay, truth: TruthMap | None, map_file_kb: float | None
+    replay: Replay,
+    truth: TruthMap | None,
+    map_file_kb: float | None,
+    map_reloads: bool | None = None,
 ) -> dict[str, Any]:
     """Every key of ``result.json``; a value that cannot exist is None, never 0.
 
@@ -38,6 +43,7 @@ def result_of_replay(
         replay: A finished replay.
         truth: What its map is scored against, of ``truth_of``.
         map_file_kb: Size of the map's image file [kB], None when it was not written.
+        map_reloads: Whether an independent reader finds in that file what the map says.
     """
     config, recording = replay.config, replay.recording
     real = replay.trajectory if recording.ground_truth is None else recording.ground_truth
@@ -58,10 +64,15 @@ def result_of_replay(
         "t90_s": None,
         "t95_s": None,
         "t99_s": None,
+        "t_ref95_s": None,
+        "efficiency": None,
         "path_length_m": path_length(real.poses),
         "contacts": None,
+        "contacts_by_people": None,
         "min_clearance_m": None if plan is None else min_clearance(real.poses, plan.solids()),
         **map_scores(scores),
+        "ghost_area_m2": None if truth is None else ghost_area(replay.grid, truth),
+        "map_length_error": None if truth is None else map_length_error(replay.grid, truth),
         **trajectory_scores(replay.trajectory, replay.online, recording.ground_truth),
         **_relation_scores(replay),
         "map_updates": replay.map_updates,
@@ -70,6 +81,7 @@ def result_of_replay(
         "map_update_ms_p99": percentile_ms(seconds, 99),
         "map_update_rate_hz": replay.map_updates / replay.log_time if replay.log_time else None,
         "map_file_kb": map_file_kb,
+        "map_reloads": map_reloads,
         "peak_rss_mb": peak_rss_mb(),
         "home_distance_m": float(np.hypot(*(real.poses[-1, :2] - real.poses[0, :2]))),
         "dropped_frontiers": None,

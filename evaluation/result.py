@@ -9,7 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from evaluation.clearance import min_clearance
+from evaluation.map_extent import map_length_error
+from evaluation.reference_tour import reference_tour
 from mapping.compare import MapScores, score_map
+from mapping.ghosts import ghost_area
 from mapping.trajectory import Trajectory, path_length
 from mapping.trajectory_scores import score_relative, score_trajectory
 
@@ -26,15 +29,19 @@ TIMING_KEYS = (
 """Keys that differ between runs of the same seed; every other is the same to the last digit."""
 
 
-def result_of(episode: "Episode", map_file_kb: float | None) -> dict[str, Any]:
+def result_of(
+    episode: "Episode", map_file_kb: float | None, map_reloads: bool | None = None
+) -> dict[str, Any]:
     """Every key of ``result.json``; a value that cannot exist is None, never 0.
 
     Args:
         episode: A finished episode.
         map_file_kb: Size of the map's image file [kB], None when it was not written.
+        map_reloads: Whether an independent reader finds in that file what the map says.
     """
     config, track = episode.config, episode.track
     poses_world = track.pose_world
+    times = _times_of_coverage(episode)
     return {
         "world": config.world,
         "mapper": config.mapper,
@@ -45,11 +52,15 @@ def result_of(episode: "Episode", map_file_kb: float | None) -> dict[str, Any]:
         "wall_time_s": round(episode.wall_time, 3),
         "real_time_factor": round(episode.sim_time / episode.wall_time, 1),
         "coverage": float(episode.coverages[-1]),
-        **_times_of_coverage(episode),
+        **times,
+        **_against_the_reference(episode, times["t95_s"]),
         "path_length_m": path_length(poses_world),
         "contacts": episode.contacts,
+        "contacts_by_people": episode.contacts_by_people,
         "min_clearance_m": min_clearance(poses_world, episode.plan.solids()),
         **map_scores(score_map(episode.grid, episode.truth)),
+        "ghost_area_m2": ghost_area(episode.grid, episode.truth),
+        "map_length_error": map_length_error(episode.grid, episode.truth),
         **trajectory_scores(
             Trajectory(stamps=episode.trajectory.stamps, poses=episode.trajectory.poses),
             Trajectory(stamps=track.stamps, poses=track.pose_map),
@@ -61,6 +72,7 @@ def result_of(episode: "Episode", map_file_kb: float | None) -> dict[str, Any]:
         "map_update_ms_p99": percentile_ms(episode.map_update_seconds, 99),
         "map_update_rate_hz": episode.map_updates / episode.sim_time,
         "map_file_kb": map_file_kb,
+        "map_reloads": map_reloads,
         "peak_rss_mb": peak_rss_mb(),
         "home_distance_m": float(np.hypot(*(poses_world[-1, :2] - poses_world[0, :2]))),
         "dropped_frontiers": [asdict(frontier) for frontier in episode.dropped_frontiers],
@@ -74,6 +86,18 @@ def _times_of_coverage(episode: "Episode") -> dict[str, float | None]:
         reached = np.flatnonzero(episode.coverages >= share / 100.0)
         times[f"t{share}_s"] = float(episode.coverage_times[reached[0]]) if len(reached) else None
     return times
+
+
+def _against_the_reference(episode: "Episode", t95: float | None) -> dict[str, float | None]:
+    """How fast one who knows the plan sees 95 % of it [s], and that time over the robot's own.
+
+    ``t_ref95_s`` is None where no tour sees so much, 0 where the start does; there, and where the
+    robot did not get so far, ``efficiency`` is None.
+    """
+    tour = reference_tour(episode.truth, episode.plan.start, share=0.95)
+    t_ref95 = round(tour.time_s, 3) if tour.sees_share else None
+    efficiency = t_ref95 / t95 if t_ref95 and t95 else None
+    return {"t_ref95_s": t_ref95, "efficiency": efficiency}
 
 
 def map_scores(scores: MapScores | None) -> dict[str, float | None]:

@@ -51,8 +51,11 @@ def compile_kernels(mapper: str, *, simulates: bool) -> None:
 
     if simulates:
         from evaluation.episode import EpisodeConfig, run_episode
+        from evaluation.result import result_of
 
-        run_episode(EpisodeConfig(mapper=mapper, time_limit=20.0), plan=TINY_ROOM)
+        config = EpisodeConfig(mapper=mapper, time_limit=20.0, people=1)
+        episode = run_episode(config, plan=TINY_ROOM)
+        result_of(episode, map_file_kb=None)
     recording = Recording(log=sparse_log())
     run_replay(ReplayConfig(log=Path(recording.log.source), mapper=mapper), recording)
     note_kernels(_kind(mapper, simulates))

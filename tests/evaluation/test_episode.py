@@ -1,5 +1,6 @@
 """Whole short episodes in a tiny room: reproducible, complete in their keys, safe to interrupt."""
 
+import dataclasses
 import json
 from dataclasses import replace
 from pathlib import Path
@@ -20,12 +21,13 @@ SHORT = EpisodeConfig(world="tiny_room", seed=3, time_limit=15.0)
 
 DESIGN_KEYS = set(
     "world mapper navigator seed stop_reason sim_time_s wall_time_s real_time_factor coverage "
-    "t90_s t95_s t99_s path_length_m contacts min_clearance_m f1_5cm f1_10cm adnn_m h95_m free_iou "
+    "t90_s t95_s t99_s t_ref95_s efficiency "
+    "path_length_m contacts min_clearance_m f1_5cm f1_10cm adnn_m h95_m free_iou "
     "false_free wall_thickness_ratio ate_rmse_m ate_max_m yaw_error_max_deg ate_aligned_rmse_m "
     "ate_online_rmse_m "
     "rpe_trans_rmse_m rpe_rot_rmse_deg map_updates scans_dropped map_update_ms_p50 "
     "map_update_ms_p99 map_update_rate_hz map_file_kb peak_rss_mb home_distance_m "
-    "dropped_frontiers".split()
+    "dropped_frontiers map_length_error map_reloads contacts_by_people ghost_area_m2".split()
 )
 
 FILES = {
@@ -54,11 +56,26 @@ def test_the_same_seed_writes_the_same_bytes_but_for_the_timings(tmp_path: Path)
         assert (tmp_path / "a" / file).read_bytes() == (tmp_path / "b" / file).read_bytes(), file
 
 
+def test_people_walk_through_an_episode_as_its_seed_says(tmp_path: Path) -> None:
+    results = []
+    for seed in (3, 3, 4):
+        config = dataclasses.replace(SHORT, seed=seed, people=2, mapper="ogm")
+        results.append(write_run(run_episode(config, plan=TINY_ROOM), tmp_path / str(len(results))))
+    alone = write_run(
+        run_episode(dataclasses.replace(SHORT, mapper="ogm"), plan=TINY_ROOM), tmp_path
+    )
+    first, again, other = (result["path_length_m"] for result in results)
+    assert first == again != other
+    assert first != alone["path_length_m"]
+    assert json.loads((tmp_path / "0" / "config.json").read_text())["people"] == 2
+
+
 def test_a_run_folder_has_every_file_and_every_key_and_its_map_can_be_read(tmp_path: Path) -> None:
     result = write_run(run_episode(SHORT, plan=TINY_ROOM), tmp_path)
     assert {path.name for path in tmp_path.iterdir()} == FILES
     assert set(result) == DESIGN_KEYS
     assert (read_map(tmp_path / "map.yaml").states == 0).any()
+    assert result["map_reloads"] is True
     config = json.loads((tmp_path / "config.json").read_text())
     assert config["seed"] == 3
     assert config["versions"]["mujoco"]
