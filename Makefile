@@ -1,18 +1,22 @@
 # make explore   set up, then explore lim_room and score the map
 # make test      set up, then run the tests
+# make scenarios set up, then run all scenarios with all their seeds: ten minutes
 # make check     format, lint, types, import layers, tests
 
 PYTHON ?= python3
 BIN := .venv/bin
 READY := .venv/ready
 
-.PHONY: explore test check format
+.PHONY: explore test scenarios check format
 
 explore: $(READY)
 	$(BIN)/burger explore --world lim_room --out runs/lim_room
 
 test: $(READY)
 	$(BIN)/pytest --numprocesses 2
+
+scenarios: $(READY)
+	$(BIN)/burger scenario run --jobs 2 --out runs/scenarios
 
 check: $(READY)
 	$(BIN)/ruff format --check .

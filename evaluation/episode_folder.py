@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from evaluation.episode import Episode
+from evaluation.map_reload import map_reloads
 from evaluation.recorder import remove_recording
 from evaluation.result import result_of
 from evaluation.run_folder import describe, start_run, write_json, write_pose_graph
@@ -30,7 +31,7 @@ def write_run(episode: Episode, folder: Path) -> dict[str, Any]:
     write_tum(folder / "odometry.tum", stamps, track.pose_odom)
     write_pose_graph(folder, episode.pose_graph)
     map_file_kb = (folder / "map.pgm").stat().st_size / 1e3
-    result = result_of(episode, map_file_kb)
+    result = result_of(episode, map_file_kb, map_reloads(folder / "map.yaml", episode.grid))
     save_map_picture(
         folder / "map.png",
         episode.grid,

@@ -3,6 +3,7 @@
 from pathlib import Path
 from typing import Any
 
+from evaluation.map_reload import map_reloads
 from evaluation.replay import Replay
 from evaluation.replay_result import result_of_replay, truth_of
 from evaluation.run_folder import describe, start_run, write_json, write_pose_graph
@@ -31,7 +32,9 @@ def write_replay(replay: Replay, folder: Path) -> dict[str, Any]:
     else:
         write_tum(folder / "ground_truth.tum", true_poses.stamps, true_poses.poses)
     truth = truth_of(replay)
-    result = result_of_replay(replay, truth, (folder / "map.pgm").stat().st_size / 1e3)
+    map_file_kb = (folder / "map.pgm").stat().st_size / 1e3
+    reloads = map_reloads(folder / "map.yaml", replay.grid)
+    result = result_of_replay(replay, truth, map_file_kb, reloads)
     save_map_picture(
         folder / "map.png",
         replay.grid,

@@ -16,7 +16,9 @@ from mapping.io.g2o import write_g2o
 from mapping.pose_graph import PoseGraph
 
 if TYPE_CHECKING:  # a replay needs no simulator, which an episode imports
+    from evaluation.calibration import CalibrationConfig
     from evaluation.episode import EpisodeConfig
+    from evaluation.localization_run import LocalizationConfig
     from evaluation.replay import ReplayConfig
 
 RECORDED_VERSIONS = ("burger-testbed", "mujoco", "gymnasium", "numpy", "scipy", "numba", "gtsam")
@@ -49,7 +51,9 @@ def start_run(folder: Path) -> None:
     (folder / "result.json").unlink(missing_ok=True)
 
 
-def describe(config: "EpisodeConfig | ReplayConfig") -> dict[str, Any]:
+def describe(
+    config: "EpisodeConfig | ReplayConfig | CalibrationConfig | LocalizationConfig",
+) -> dict[str, Any]:
     """Everything that defines the run: the config, the versions, the commit."""
     told = asdict(config)
     return {

@@ -9,7 +9,13 @@ VERBS = {
     "replay": "map a recorded log, score what can be scored, write a run folder",
     "optimize": "the poses of a g2o file that agree best with its measurements",
     "compare": "score a map file against a floor plan or another map",
+    "localize": "find the robot on a given map: particles, a histogram or an extended Kalman filter",
     "world": "list, show and convert floor plans",
+    "scenario": "list scenarios; run them, judge them by their criteria, write junit.xml",
+    "sweep": "explore every combination of worlds, mappers, navigators and seeds, table them",
+    "report": "one HTML page of tables, plots and worst maps from run folders",
+    "calibrate": "the thesis's two sensor experiments: how often is the lidar right?",
+    "drive": "drive by hand in a terminal, the map growing beside it",
     "bench": "how fast each stage and the whole loop run on this machine",
 }
 """Verb -> one line about it; each verb is the module of that name in this folder."""

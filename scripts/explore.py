@@ -6,6 +6,7 @@ from typing import Annotated, Any
 
 import tyro
 
+from envs.worlds import world_label
 from evaluation.episode import Episode, EpisodeConfig, Progress, check_episode, run_episode
 from evaluation.episode_folder import write_run
 from evaluation.recorder import Recorder
@@ -63,7 +64,7 @@ def _shown(value: float | None) -> str:
 
 
 def _folder_name(config: EpisodeConfig) -> str:
-    return f"{Path(config.world).stem}-{config.mapper}-seed{config.seed}"
+    return f"{world_label(config.world)}-{config.mapper}-seed{config.seed}"
 
 
 def _watch(config: EpisodeConfig, recorder: Recorder | None) -> Episode:

@@ -12,10 +12,16 @@ from tyro.conf import Positional
 from envs.floor_plan import FloorPlan
 from envs.plan_picture import draw_plan
 from envs.plan_yaml import write_plan
+from envs.random_world import MAX_AREA, MAX_ROOMS, MIN_AREA, MIN_ROOMS, STYLES
 from envs.worlds import built_in_worlds, load_world
 from mapping.errors import TestbedError
 from mapping.io.atomic import write_atomically
 from scripts.arguments import parse
+
+RANDOM_ABOUT = (
+    f"a building drawn from the seed, {MIN_AREA:g} to {MAX_AREA:g} m2, {MIN_ROOMS} to {MAX_ROOMS} "
+    f"rooms; after commas rooms=N, area=M2, style={'|'.join(STYLES)}"
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -23,7 +29,7 @@ class Show:
     """Draw a floor plan and the robot's start."""
 
     world: Annotated[str, Positional]
-    """A built-in world by name, or a floor plan file."""
+    """A built-in world by name, random:SEED, or a floor plan file."""
     out: Path | None = None
     """Picture to write; default NAME.png."""
 
@@ -33,7 +39,7 @@ class Convert:
     """Write any floor plan as the testbed's own YAML."""
 
     world: Annotated[str, Positional]
-    """A built-in world by name, or a floor plan file."""
+    """A built-in world by name, random:SEED, or a floor plan file."""
     out: Annotated[Path, Positional]
     """YAML file to write."""
 
@@ -64,6 +70,7 @@ def _list(arguments: list[str]) -> None:
     parse(List, "world list", arguments)
     for name, about in built_in_worlds().items():
         print(f"{name:<20} {about}")
+    print(f"{'random:SEED':<20} {RANDOM_ABOUT}")
 
 
 def _show(arguments: list[str]) -> None:

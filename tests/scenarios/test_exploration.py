@@ -19,21 +19,12 @@ def explored(**settings: object) -> tuple[Episode, dict[str, object]]:
     [("datasheet", 0.90), ("ideal", 0.97)],
 )
 def test_with_true_odometry_the_map_is_as_good_as_the_lidar(lidar: str, f1: float) -> None:
-    _, result = explored(world="turtlebot3_world", odometry="truth", lidar=lidar, seed=7)
+    episode, result = explored(world="turtlebot3_world", odometry="truth", lidar=lidar, seed=7)
     assert result["stop_reason"] == COMPLETE
     assert result["contacts"] == 0
     assert result["coverage"] >= 0.985
     assert result["f1_5cm"] >= f1
     assert result["free_iou"] >= 0.96, "as the map that ROBOTIS ships, 0.960"
-
-
-@pytest.mark.parametrize("world", ["empty_room", "lim_room", "narrow_door"])
-def test_with_typical_odometry_every_room_is_covered_and_the_robot_comes_home(world: str) -> None:
-    episode, result = explored(world=world, seed=5)
-    assert result["stop_reason"] == COMPLETE
-    assert result["contacts"] == 0
-    assert result["coverage"] >= 0.96
-    assert result["home_distance_m"] <= 0.3
     assert episode.grid.shape[0] * episode.grid.resolution < 15.0, "nothing far outside the walls"
 
 
