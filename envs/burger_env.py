@@ -161,6 +161,12 @@ class BurgerEnv(gym.Env[Observation, Action]):  # type: ignore[misc]  # mypy ski
         """The floor plan that the robot drives in: the truth, for scoring."""
         return self._simulation.plan
 
+    @property
+    def scene_state(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """MuJoCo's ``qpos`` and ``mocap_pos`` of this moment: the truth, for drawing."""
+        data = self._simulation.data
+        return data.qpos, data.mocap_pos
+
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Observation, dict[str, Any]]:

@@ -12,11 +12,13 @@ from numpy.typing import ArrayLike, NDArray
 from envs.floor_plan import FloorPlan
 from envs.truth import truth_of_plan
 from envs.worlds import load_world
+from evaluation.progress import Progress, progress_of
 from evaluation.recorder import Recorder
 from evaluation.track import Track
 from mapping.burger import LIDAR_RANGE_MAX, MAX_LINEAR_SPEED
 from mapping.coverage import CoverageMeter
 from mapping.errors import TestbedError
+from mapping.gap_filling import GapFilling, check_rule, with_gaps_filled
 from mapping.grid import OccupancyGrid
 from mapping.mappers import make_mapper
 from mapping.messages import ODOMETRY_COLUMNS
@@ -25,7 +27,7 @@ from mapping.pose_history import PoseHistory
 from mapping.slam.keyframe_pose_graph import pose_graph_of
 from mapping.truth import TruthMap
 from nav.agent import MappingAgent
-from nav.navigator import RUNNING, DroppedFrontier, Navigator
+from nav.navigator import RUNNING, ChosenGoal, DroppedFrontier, Navigator
 from nav.navigators import make_navigator
 from nav.route import parse_route
 
@@ -33,6 +35,9 @@ ENVIRONMENT = "envs:TurtleBot3Burger-v0"
 CONTROL_PERIOD = 0.1
 TIME_LIMIT = "time_limit"
 INTERRUPTED = "interrupted"
+
+BATTERY_LIFE = 9000.0
+"""How long a Burger drives on one charge [s]: 2 h 30 min (ROBOTIS e-manual, specifications)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,13 +69,16 @@ class EpisodeConfig:
     """So many people walk on random loops, besides those of the world."""
     resolution: float | None = None
     """Edge of a map cell [m]; None takes the mapper's own: 1 cm, or 5 cm for gmapping."""
+    gap_filling: GapFilling = "none"
+    """Closes holes of walls in the map that is written and scored: none, thesis or better."""
     seed: int = 0
     """Seed of every random number of the episode."""
-    time_limit: float = 1800.0
-    """Simulated time after which the episode ends [s]."""
+    time_limit: float = BATTERY_LIFE
+    """Simulated time after which the episode ends [s]; default what a Burger's battery lasts."""
 
     def __post_init__(self) -> None:
         """Refuse figures that make no episode."""
+        check_rule(self.gap_filling)
         if self.seed < 0:
             raise TestbedError(f"seed: {self.seed}; must be 0 or more")
         if not CONTROL_PERIOD <= self.time_limit < np.inf:
@@ -105,9 +113,13 @@ class Episode:
     scans_dropped: int
     map_update_seconds: NDArray[np.float64]
     """Wall time of each map update ``(n,)`` [s]."""
+    map_update_stamps: NDArray[np.float64]
+    """Stamp of the scan that each took in ``(n,)`` [s]."""
     navigator_seconds: NDArray[np.float64]
     """Wall time of each command ``(n,)`` [s]."""
     dropped_frontiers: tuple[DroppedFrontier, ...]
+    goals: tuple[ChosenGoal, ...]
+    """What the navigator set out for, in order."""
     recorder: Recorder | None = None
     """What kept the run's messages, if they were to be kept."""
     pose_graph: PoseGraph | None = None
@@ -117,17 +129,6 @@ class Episode:
     def sim_time(self) -> float:
         """Simulated time at the end [s]: when coverage was measured last."""
         return float(self.coverage_times[-1])
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Progress:
-    """How an episode stands, told once a simulated second."""
-
-    time: float
-    """Simulated time [s]."""
-    coverage: float
-    grid: OccupancyGrid
-    pose_map: NDArray[np.float64]
 
 
 def run_episode(
@@ -241,7 +242,7 @@ def drive_episode(
                 coverages.append((time, meter.measure(agent.mapper.grid, _changed(agent))))
                 if on_progress is not None:
                     told = perf_counter()
-                    on_progress(_progress(time, coverages[-1][1], agent))
+                    on_progress(progress_of(coverages[-1], agent, observation, info))
                     telling += perf_counter() - told
             if stop_reason != RUNNING:
                 break
@@ -254,7 +255,8 @@ def drive_episode(
         stop_reason = INTERRUPTED
     agent.mapper.finish()
     wall_time = perf_counter() - started - telling
-    coverages.append((float(observation["time"][0]), meter.measure(agent.mapper.grid)))
+    grid = with_gaps_filled(agent.mapper.grid, config.gap_filling)
+    coverages.append((float(observation["time"][0]), meter.measure(grid)))
     times, values = np.array(coverages).T
     return Episode(
         config=config,
@@ -268,12 +270,14 @@ def drive_episode(
         contacts_by_people=int(info["contacts_by_people"]),
         coverage_times=times,
         coverages=values,
-        grid=agent.mapper.grid,
+        grid=grid,
         map_updates=agent.mapper.updates,
         scans_dropped=agent.mapper.scans_dropped,
         map_update_seconds=np.array(agent.map_update_seconds, dtype=np.float64),
+        map_update_stamps=np.array(agent.map_update_stamps, dtype=np.float64),
         navigator_seconds=np.array(agent.navigator_seconds, dtype=np.float64),
         dropped_frontiers=agent.navigator.dropped_frontiers,
+        goals=agent.navigator.goals,
         recorder=recorder,
         pose_graph=pose_graph_of(agent.mapper),
     )
@@ -291,9 +295,3 @@ def _note(track: Track, observation: Any, info: dict[str, Any], agent: MappingAg
     pose_odom = newest[ODOMETRY_COLUMNS.index("x") : ODOMETRY_COLUMNS.index("yaw") + 1]
     time = float(observation["time"][0])
     track.note(time, agent.mapper.pose_map, info["pose_world"], pose_odom)
-
-
-def _progress(time: float, coverage: float, agent: MappingAgent) -> Progress:
-    return Progress(
-        time=time, coverage=coverage, grid=agent.mapper.grid, pose_map=agent.mapper.pose_map
-    )

@@ -39,6 +39,8 @@ class LogFeed:
         """What the mapper took for all of it [s]."""
         self.map_update_seconds: list[float] = []
         """What it took for each scan that went into the map [s]."""
+        self.map_update_stamps: list[float] = []
+        """Stamps of those scans [s]."""
         self.online = PoseHistory()
         """Where it took the robot to be, at the newest odometry of each period."""
 
@@ -53,6 +55,8 @@ class LogFeed:
         self.wall_time += seconds
         if self._mapper.updates > updates:
             self.map_update_seconds.append(seconds)
+            if due is not None:
+                self.map_update_stamps.append(due.stamp)
         self._note(scan, odometry)
 
     def _due(self, scan: LaserScan | None) -> LaserScan | None:

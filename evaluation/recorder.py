@@ -4,9 +4,7 @@ A control period takes 1 kB and a scan 1.4 kB: 18 kB a simulated second, 130 MB 
 """
 
 import shutil
-import zlib
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +12,7 @@ from numpy.typing import NDArray
 
 from envs.burger_constants import BASE_LINK_HEIGHT, IMU_POSITION, LIDAR_POSITION
 from envs.burger_env import IMU_ROWS, ODOMETRY_ROWS
+from evaluation.packed_map import PackedMap
 from mapping.burger import LIDAR_BEAMS, LIDAR_POSE_BASE
 from mapping.coarse_map import coarse_map
 from mapping.geometry import Pose, compose, inverse
@@ -63,32 +62,6 @@ _SCAN = np.dtype([("stamp", np.float64), ("ranges", np.float32, LIDAR_BEAMS)])
 """What is kept of a scan; all else is the same in each."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _PackedMap:
-    """A map in a hundredth of its size."""
-
-    time: float
-    resolution: float
-    origin: tuple[float, float]
-    shape: tuple[int, ...]
-    states: bytes
-
-    @classmethod
-    def of(cls, time: float, drawn: MapFile) -> "_PackedMap":
-        states = zlib.compress(drawn.states.tobytes(), level=1)
-        return cls(
-            time=time,
-            resolution=drawn.resolution,
-            origin=drawn.origin,
-            shape=drawn.states.shape,
-            states=states,
-        )
-
-    def unpack(self) -> MapFile:
-        states = np.frombuffer(zlib.decompress(self.states), dtype=np.int8).reshape(self.shape)
-        return MapFile(resolution=self.resolution, origin=self.origin, states=states)
-
-
 class Recorder:
     """Notes every control period of a run; Ctrl-C leaves each one noted whole or not at all."""
 
@@ -101,7 +74,7 @@ class Recorder:
         require_rosbags()
         self._periods, self._scans = bytearray(), bytearray()
         self._newest_scan = -np.inf
-        self._maps: list[_PackedMap] = []
+        self._maps: list[PackedMap] = []
 
     def note(
         self,
@@ -120,7 +93,7 @@ class Recorder:
         """
         time = float(observation["time"][0])
         if not self._maps or time >= self._maps[-1].time + MAP_PERIOD:
-            self._maps.append(_PackedMap.of(time, coarse_map(grid, MAP_RESOLUTION)))
+            self._maps.append(PackedMap.of(time, coarse_map(grid, MAP_RESOLUTION)))
         self._note_scan(observation)
         odometry = observation["odometry"]
         map_from_odom = compose(pose_map, inverse(odometry[-1, 1:4]))

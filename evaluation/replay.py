@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from evaluation.log_feed import LogFeed
 from evaluation.recording import Recording
 from mapping.errors import TestbedError
+from mapping.gap_filling import GapFilling, check_rule, with_gaps_filled
 from mapping.geometry import Pose, compose
 from mapping.grid import OccupancyGrid
 from mapping.log_editing import reach_of, rebased
@@ -54,6 +55,8 @@ class ReplayConfig:
     """How noisy the readings are; default lds01 for a lidar that reaches up to 4 m, else sick."""
     period: float = 0.0
     """Give the mapper a scan at most every so many seconds of the log; 0 gives it all."""
+    gap_filling: GapFilling = "none"
+    """Closes holes of walls in the map that is written and scored: none, thesis or better."""
     seed: int = 0
     """Seed of the mapper's random numbers, if it draws any."""
     set: tuple[str, ...] = ()
@@ -67,6 +70,7 @@ class ReplayConfig:
             raise TestbedError(f"resolution: {self.resolution} m; must be 0.002 to 0.5")
         if not 0.0 <= self.period < np.inf:
             raise TestbedError(f"period: {self.period} s; must be finite, 0 or more")
+        check_rule(self.gap_filling)
         if self.seed < 0:
             raise TestbedError(f"seed: {self.seed}; must be 0 or more")
 
@@ -95,6 +99,8 @@ class Replay:
     scans_dropped: int
     map_update_seconds: NDArray[np.float64]
     """Wall time of each map update ``(n,)`` [s]."""
+    map_update_stamps: NDArray[np.float64]
+    """Stamp of the scan that each took in ``(n,)`` [s]."""
     pose_graph: PoseGraph | None = None
     """The mapper's keyframes and the matches between them, if it keeps such."""
 
@@ -138,7 +144,7 @@ def run_replay(
     return Replay(
         config=config,
         recording=recording,
-        grid=grid,
+        grid=with_gaps_filled(grid, config.gap_filling),
         trajectory=_at_every_scan(known, told, recording.start_pose_map),
         online=Trajectory(stamps=feed.online.stamps, poses=feed.online.poses),
         odometry=odometry_trajectory(odometry),
@@ -148,6 +154,7 @@ def run_replay(
         map_updates=mapper.updates,
         scans_dropped=mapper.scans_dropped,
         map_update_seconds=np.array(feed.map_update_seconds),
+        map_update_stamps=np.array(feed.map_update_stamps),
         pose_graph=pose_graph_of(mapper),
     )
 

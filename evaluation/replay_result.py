@@ -9,7 +9,13 @@ from envs.truth import truth_of_plan
 from evaluation.clearance import min_clearance
 from evaluation.map_extent import map_length_error
 from evaluation.replay import Replay
-from evaluation.result import map_scores, peak_rss_mb, percentile_ms, trajectory_scores
+from evaluation.result import (
+    map_scores,
+    peak_rss_mb,
+    percentile_ms,
+    trajectory_scores,
+    update_rates,
+)
 from mapping.compare import score_map
 from mapping.ghosts import ghost_area
 from mapping.relations import score_relations
@@ -80,6 +86,7 @@ def result_of_replay(
         "map_update_ms_p50": percentile_ms(seconds, 50),
         "map_update_ms_p99": percentile_ms(seconds, 99),
         "map_update_rate_hz": replay.map_updates / replay.log_time if replay.log_time else None,
+        **update_rates(replay.map_update_stamps),
         "map_file_kb": map_file_kb,
         "map_reloads": map_reloads,
         "peak_rss_mb": peak_rss_mb(),

@@ -21,6 +21,9 @@ if TYPE_CHECKING:  # a replay needs no simulator, which an episode imports
     from evaluation.localization_run import LocalizationConfig
     from evaluation.replay import ReplayConfig
 
+GOALS_FILE, ANIMATION_FILE = "goals.csv", "episode.gif"
+"""Files that only some runs have."""
+
 RECORDED_VERSIONS = ("burger-testbed", "mujoco", "gymnasium", "numpy", "scipy", "numba", "gtsam")
 
 
@@ -42,13 +45,14 @@ def run_folder(folder: Path) -> Iterator[None]:
 
 
 def start_run(folder: Path) -> None:
-    """Make sure of the folder and take away an earlier run's result: it would vouch for this one.
+    """Make sure of the folder and take away what would pass for this run's, the result first.
 
     Raises:
         TestbedError: If it is a file, or nothing can be written there.
     """
     _make(folder)
-    (folder / "result.json").unlink(missing_ok=True)
+    for earlier in ("result.json", GOALS_FILE, ANIMATION_FILE):
+        (folder / earlier).unlink(missing_ok=True)
 
 
 def describe(

@@ -11,7 +11,7 @@ from typing import Any
 
 from envs.random_world import expand_worlds, is_random_world, parse_random_world
 from envs.worlds import load_world, world_label
-from evaluation.episode import EpisodeConfig, check_episode
+from evaluation.episode import BATTERY_LIFE, EpisodeConfig, check_episode
 from evaluation.episode_pool import Failure, Outcome, run_episodes
 from evaluation.run_folder import describe
 from evaluation.run_record import RunRecord, read_json
@@ -40,7 +40,7 @@ class SweepConfig:
     """So many people walk in every world, besides its own."""
     seeds: int = 1
     """Seeds of each combination: 0 to this minus 1."""
-    time_limit: float = 1800.0
+    time_limit: float = BATTERY_LIFE
     """Simulated time after which a run ends [s]."""
 
     def __post_init__(self) -> None:

@@ -19,6 +19,8 @@ IMU_COLUMNS = ("stamp", "qx", "qy", "qz", "qw", "wx", "wy", "wz", "ax", "ay", "a
 
 _TURN_RATE_COLUMNS = (IMU_COLUMNS.index("stamp"), IMU_COLUMNS.index("wz"))
 
+_ACCELERATION_COLUMNS = tuple(IMU_COLUMNS.index(name) for name in ("stamp", "ax", "ay"))
+
 Observation = Mapping[str, NDArray[Any]]
 
 
@@ -160,6 +162,10 @@ class _ImuRows(Sequence[Imu]):
         """Stamp and angular velocity about z of every row ``(n, 2)``, without making messages."""
         return self._rows.take(_TURN_RATE_COLUMNS, axis=1)
 
+    def accelerations(self) -> NDArray[np.float64]:
+        """Stamp and linear acceleration along x and y of every row ``(n, 3)``."""
+        return self._rows.take(_ACCELERATION_COLUMNS, axis=1)
+
 
 def turn_rates(imu: Sequence[Imu]) -> NDArray[np.float64]:
     """Stamp [s] and angular velocity about z [rad/s] of every message ``(n, 2)``."""
@@ -167,3 +173,11 @@ def turn_rates(imu: Sequence[Imu]) -> NDArray[np.float64]:
         return imu.turn_rates()
     rows = [(message.stamp, message.angular_velocity[2]) for message in imu]
     return np.array(rows, dtype=np.float64).reshape(-1, 2)
+
+
+def accelerations(imu: Sequence[Imu]) -> NDArray[np.float64]:
+    """Stamp [s] and linear acceleration along x and y [m/s2] of every message ``(n, 3)``."""
+    if isinstance(imu, _ImuRows):
+        return imu.accelerations()
+    rows = [(message.stamp, *message.linear_acceleration[:2]) for message in imu]
+    return np.array(rows, dtype=np.float64).reshape(-1, 3)

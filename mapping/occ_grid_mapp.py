@@ -1,18 +1,24 @@
 """OccGridMapp, the thesis's mapper: every scan drawn from the newest odometry pose, beam by beam.
 
-The map keeps the frame of the start pose (x to the right, REP-103). The thesis draws its maps with
-the start heading up and starts 10 m from the corner of the grid, so that what lies behind and to
-the left of the start is soon lost; here the start is in the middle unless told otherwise.
+Its 5000 x 5000 cells of 1 cm take 100 MB as float32 (the thesis's float64 takes 200 MB); to plot
+from, only the part that was drawn is copied. It differs from the thesis's chapter 4 in this:
+
+- The map keeps the map frame (x to the right, REP-103); ``mapping.thesis_plot`` draws it in that
+  of fig. 4.3, with the start heading up and the start 10 m from both axes.
+- The start is in the middle of the grid. The thesis's (10, 10) m soon loses what lies behind the
+  start and to one side; ``start_in_grid`` sets it.
+- Beams start at the lidar, 3.2 cm behind the point that odometry tells of, where the thesis has
+  them start; ``lidar_pose_base`` (0, 0, 0) does that too.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from mapping.burger import LIDAR_POSE_BASE, LIDAR_RANGE_MAX
 from mapping.errors import TestbedError
-from mapping.geometry import compose
+from mapping.geometry import Pose, compose
 from mapping.grid import GridConfig, OccupancyGrid
 from mapping.messages import LaserScan
 from mapping.odometry_mapper import OdometryMapper, checked_pose
@@ -33,6 +39,8 @@ class OccGridMappConfig:
     """Edge of a cell [m] (thesis 4.3.2)."""
     start_in_grid: tuple[float, float] = (25.0, 25.0)
     """Where the start pose lies, x and y from the grid's corner [m]; the thesis's is (10, 10)."""
+    state_threshold: float = 3.0
+    """A cell is occupied above this log odds and free below its negative (thesis 4.3.6)."""
     turn_gate: float | None = 0.2
     """A scan is dropped while the robot turns faster [rad/s] (thesis 5.3); None draws them all."""
     log_odds_occupied: float = LOG_ODDS_OCCUPIED
@@ -46,7 +54,9 @@ class OccGridMappConfig:
 
     def __post_init__(self) -> None:
         """Refuse figures that make no mapper."""
-        for name in ("log_odds_occupied", "log_odds_free", "max_range"):
+        if self.cells < 1:
+            raise TestbedError(f"cells: {self.cells}; must be at least 1")
+        for name in ("log_odds_occupied", "log_odds_free", "max_range", "state_threshold"):
             value = getattr(self, name)
             if not (np.isfinite(value) and value > 0.0):
                 raise TestbedError(f"{name}: {value}; must be a finite number above 0")
@@ -64,11 +74,29 @@ class OccGridMappConfig:
             rows=self.cells,
             columns=self.cells,
             grows=False,
+            occupied_above=self.state_threshold,
+            free_below=-self.state_threshold,
         )
 
 
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class MapSnapshot:
+    """What a mapper knew at one moment, for plotting while mapping goes on (thesis 4.3.3)."""
+
+    grid: OccupancyGrid
+    """A copy of the part of the map that was drawn."""
+    path: Pose
+    """Where the robot was at each scan up to then, in the map frame ``(n, 3)``."""
+    start_pose_map: Pose
+    """Where it started ``(3,)``."""
+
+
 class OccGridMapp(OdometryMapper):
-    """The thesis's chapter 4: no deskewing, no clamp, cells near a hit cleared with less weight."""
+    """The thesis's chapter 4: no deskewing, no clamp, cells near a hit cleared with less weight.
+
+    A scan's stamp is what the thesis's new-scan flag is: a scan is drawn once, however often it is
+    given, and with the newest odometry there is.
+    """
 
     def __init__(
         self,
@@ -80,6 +108,29 @@ class OccGridMapp(OdometryMapper):
         self.config = config or OccGridMappConfig()
         start = checked_pose("start_pose_map", start_pose_map)
         super().__init__(OccupancyGrid(grid or self.config.grid(start)), start)
+        self._low, self._high = start[:2].copy(), start[:2].copy()
+
+    def snapshot(self) -> MapSnapshot:
+        """The part of the map that was drawn, and the path; later scans do not change them.
+
+        A copy of a room takes a few milliseconds, so that no scan is lost for it.
+        """
+        rows, columns = self.grid.shape
+        first = np.clip(self.grid.world_to_cell(self._low), 0, (rows - 1, columns - 1))
+        last = np.clip(self.grid.world_to_cell(self._high), 0, (rows - 1, columns - 1))
+        part = self.grid.log_odds[first[0] : last[0] + 1, first[1] : last[1] + 1].copy()
+        corner = self.grid.origin + first[::-1] * self.grid.resolution
+        config = replace(
+            self.grid.config,
+            origin=(float(corner[0]), float(corner[1])),
+            rows=part.shape[0],
+            columns=part.shape[1],
+        )
+        grid = OccupancyGrid(config)
+        grid.log_odds = part
+        return MapSnapshot(
+            grid=grid, path=self.trajectory.poses, start_pose_map=self.start_pose_map.copy()
+        )
 
     def draw(self, scan: LaserScan) -> bool:
         """Draw the scan's beams from the newest pose, unless the robot turns too fast."""
@@ -92,10 +143,10 @@ class OccGridMapp(OdometryMapper):
             return False
         sensor = compose(self.pose_map, config.lidar_pose_base)
         angles = sensor[2] + scan.angles[beams.indices]
-        if self.grid.config.grows:
-            reach = float(beams.lengths.max())
-            x, y = float(sensor[0]), float(sensor[1])
-            self.grid.cover(x - reach, x + reach, y - reach, y + reach)
+        reach = beams.lengths.max() + self.grid.resolution
+        low, high = sensor[:2] - reach, sensor[:2] + reach
+        self.grid.cover(float(low[0]), float(high[0]), float(low[1]), float(high[1]))
+        self._low, self._high = np.minimum(self._low, low), np.maximum(self._high, high)
         trace_beams(
             self.grid.log_odds,
             (sensor[:2] - self.grid.origin) / self.grid.resolution,

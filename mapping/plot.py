@@ -1,6 +1,7 @@
 """Turns maps into pictures: occupied black, free white, unknown blue, the path red."""
 
 from pathlib import Path
+from typing import TypeGuard
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -14,21 +15,32 @@ from mapping.cell_image import CellImage
 from mapping.grid import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
 from mapping.io.atomic import write_atomically
 from mapping.io.map_server import MapFile
+from mapping.path_plot import draw_goals, draw_left_over, draw_path, path_handles
 from mapping.truth import TruthMap
 
 OCCUPIED_COLOUR, FREE_COLOUR, UNKNOWN_COLOUR = "#000000", "#ffffff", "#9ecae1"
-"""Black, white and a light blue; with the two below they stay apart for colour-blind eyes."""
+"""Black, white and a light blue; with that below and those of ``path_plot`` they stay apart for
+colour-blind eyes."""
 
-PATH_COLOUR, TRUTH_COLOUR = "#d7191c", "#e69f00"
+TRUTH_COLOUR = "#e69f00"
 
 MARGIN = 0.3
 """Unknown space shown around what is known [m]."""
 
-LONGEST_SIDE, SHORTEST_SIDE, DPI = 8.0, 4.5, 150
-"""Size of a picture's map [inch] and its dots per inch."""
+LEGEND_ENTRY = 1.05
+"""Width of an entry of the legend [inch]; it takes more rows where they do not fit in one."""
+
+LONGEST_SIDE, LONGEST_OF_NARROW, NARROW_SIDE = 8.0, 12.0, 3.6
+"""Longer side of a picture's map [inch]; that of a narrow one is longer, until its other side is as
+long as the last."""
+
+LEAST_WIDTH, LEAST_HEIGHT, DPI = 4.5, 2.25, 150
+"""Room for the map and its legend [inch], and dots per inch."""
 
 MAX_CELLS_DRAWN = 1200
 """Cells drawn along a side; beyond, blocks of cells are drawn as one, so no wall gets lost."""
+
+POINTS_PER_INCH = 72.0
 
 _Extent = tuple[float, float, float, float]
 
@@ -38,6 +50,8 @@ def draw_map(
     grid: OccupancyGrid | MapFile,
     path: ArrayLike | None = None,
     truth: TruthMap | None = None,
+    goals: ArrayLike | None = None,
+    left_over: ArrayLike | None = None,
 ) -> None:
     """Draw a map into axes, in metres, cropped to what is known.
 
@@ -46,15 +60,20 @@ def draw_map(
         grid: The map.
         path: Where the robot was ``(n, 2 or more)``: x, y [m]; a ring marks its start.
         truth: Its walls are outlined.
+        goals: What the robot set out for ``(n, 2)`` [m], in order.
+        left_over: Frontiers that it never saw behind ``(n, 2)`` [m].
     """
     states, extent = _known_states(grid)
     CellImage(ax, _colours(states), extent)
     if truth is not None:
         _outline(ax, truth)
-    if path is not None and len(np.asarray(path)) > 0:
-        positions = np.asarray(path, dtype=np.float64)
-        ax.plot(positions[:, 0], positions[:, 1], color=PATH_COLOUR, linewidth=1.0)
-        ax.plot(*positions[0, :2], "o", color=PATH_COLOUR, markerfacecolor="white", markersize=5)
+    scale = POINTS_PER_INCH * _inches_per_metre(extent)
+    if _some(path):
+        draw_path(ax, np.asarray(path, dtype=np.float64)[:, :2], scale)
+    if _some(goals):
+        draw_goals(ax, np.asarray(goals, dtype=np.float64), scale)
+    if _some(left_over):
+        draw_left_over(ax, np.asarray(left_over, dtype=np.float64))
     ax.set_xlim(extent[0], extent[1])
     ax.set_ylim(extent[2], extent[3])
     ax.set_aspect("equal")
@@ -68,6 +87,8 @@ def save_map_picture(
     *,
     path: ArrayLike | None = None,
     truth: TruthMap | None = None,
+    goals: ArrayLike | None = None,
+    left_over: ArrayLike | None = None,
     title: str = "",
     scale: float = 1.0,
 ) -> None:
@@ -78,31 +99,48 @@ def save_map_picture(
         grid: The map.
         path: Where the robot was ``(n, 2 or more)``: x, y [m].
         truth: Its walls are outlined.
+        goals: What the robot set out for ``(n, 2)`` [m], in order.
+        left_over: Frontiers that it never saw behind ``(n, 2)`` [m].
         title: A line above the map.
         scale: 2 makes the picture twice as large.
 
     Raises:
         TestbedError: The folder cannot be written.
     """
-    _, (left, right, bottom, top) = _known_states(grid)
-    inches = LONGEST_SIDE / max(right - left, top - bottom)
-    width = max(inches * (right - left), SHORTEST_SIDE) + 0.8
-    height = max(inches * (top - bottom), SHORTEST_SIDE / 2.0) + 1.2
+    _, extent = _known_states(grid)
+    inches = _inches_per_metre(extent)
+    width = max(inches * (extent[1] - extent[0]), LEAST_WIDTH) + 0.8
+    height = max(inches * (extent[3] - extent[2]), LEAST_HEIGHT) + 1.2
     figure = Figure(figsize=(width, height), layout="constrained")
     canvas = FigureCanvasAgg(figure)
     ax = figure.subplots()
-    draw_map(ax, grid, path, truth)
+    draw_map(ax, grid, path, truth, goals, left_over)
     if title:
         figure.suptitle(title, fontsize=9, wrap=True)
+    handles = _legend(truth is not None)
+    if path is not None:
+        handles += path_handles(goals=_some(goals), left_over=_some(left_over))
     figure.legend(
-        handles=_legend(path is not None, truth is not None),
+        handles=handles,
         loc="outside lower center",
-        ncols=5,
+        ncols=min(len(handles), int(width / LEGEND_ENTRY)),
         fontsize=8,
         frameon=False,
     )
     figure.set_dpi(DPI * scale)
     write_atomically(file, lambda out: canvas.print_png(out, metadata={"Software": None}))
+
+
+def _inches_per_metre(extent: _Extent) -> float:
+    """How large a map is drawn."""
+    shorter, longer = sorted((extent[1] - extent[0], extent[3] - extent[2]))
+    side = min(max(LONGEST_SIDE, NARROW_SIDE * longer / shorter), LONGEST_OF_NARROW)
+    return side / longer
+
+
+def _some(places: ArrayLike | None) -> TypeGuard[ArrayLike]:
+    """Whether there are any."""
+    return places is not None and len(np.asarray(places)) > 0
 
 
 def _known_states(grid: OccupancyGrid | MapFile) -> tuple[NDArray[np.int8], _Extent]:
@@ -155,14 +193,12 @@ def _outline(ax: Axes, truth: TruthMap) -> None:
         ax.contour(x, y, walls, levels=[0.5], colors=TRUTH_COLOUR, linewidths=0.8)
 
 
-def _legend(with_path: bool, with_truth: bool) -> list[Patch | Line2D]:
+def _legend(with_truth: bool) -> list[Patch | Line2D]:
     handles: list[Patch | Line2D] = [
         Patch(facecolor=OCCUPIED_COLOUR, edgecolor="grey", label="occupied"),
         Patch(facecolor=FREE_COLOUR, edgecolor="grey", label="free"),
         Patch(facecolor=UNKNOWN_COLOUR, edgecolor="grey", label="unknown"),
     ]
-    if with_path:
-        handles.append(Line2D([], [], color=PATH_COLOUR, label="path"))
     if with_truth:
         handles.append(Line2D([], [], color=TRUTH_COLOUR, label="truth"))
     return handles

@@ -24,10 +24,12 @@ def text_map(grid: OccupancyGrid, pose: Pose, columns: int, lines: int) -> list[
         lines: Lines there may be.
     """
     states = grid.states()
-    known = np.argwhere(states != UNKNOWN)
-    if len(known) == 0:
+    known = states != UNKNOWN
+    in_rows, in_columns = np.flatnonzero(known.any(axis=1)), np.flatnonzero(known.any(axis=0))
+    if len(in_rows) == 0:
         return []
-    low, high = known.min(axis=0), known.max(axis=0) + 1
+    low = np.array((in_rows[0], in_columns[0]))
+    high = np.array((in_rows[-1], in_columns[-1])) + 1
     rows, width = high - low
     block = max(-(-int(rows) // (2 * lines)), -(-int(width) // columns), 1)
     halves = _pooled(states[low[0] : high[0], low[1] : high[1]], block)

@@ -30,6 +30,8 @@ class MappingAgent:
         self._scan: LaserScan | None = None
         self.map_update_seconds = array("f")
         """Wall time of each mapper update that took in a scan [s]."""
+        self.map_update_stamps = array("d")
+        """Stamps of those scans [s]."""
         self.navigator_seconds = array("f")
         """Wall time of each navigator command [s]."""
 
@@ -46,6 +48,8 @@ class MappingAgent:
         mapped = perf_counter()
         if self.mapper.updates > before:
             self.map_update_seconds.append(mapped - started)
+            if scan is not None:
+                self.map_update_stamps.append(scan.stamp)
         twist = self.navigator.command(self.mapper.grid, self.mapper.pose_map, scan)
         self.navigator_seconds.append(perf_counter() - mapped)
         return np.array([twist.linear_x, twist.angular_z], dtype=np.float32)

@@ -38,8 +38,6 @@ class DecisionConfig:
     """Worth of settling a frontier at all [m2]: what is left behind costs a way of its own."""
     loyalty: float = 4.0
     """Time by which another first leg must be better to be turned to [s]: no oscillation."""
-    end_share: float = 0.0
-    """Weight of the tour's end against that of the mean time at which worth is seen."""
     toured: int = 24
     """At most so many viewpoints are put in order, the best by worth per time."""
 
@@ -87,8 +85,7 @@ def choose(
     first_legs = np.array([time for _, _, time in leading])
     weights = np.array([_worth(viewpoint, config) for viewpoint in chosen])
     legs = _legs(chosen, field) / config.speed + config.settling_time
-    end_weight = config.end_share * float(weights.sum())
-    return chosen[int(best_order(first_legs, legs, weights, end_weight)[0])]
+    return chosen[int(best_order(first_legs, legs, weights)[0])]
 
 
 def _worth(viewpoint: Viewpoint, config: DecisionConfig) -> float:

@@ -21,7 +21,15 @@ from nav.former_walls import FormerWalls
 from nav.frontier import Frontier, find_frontiers
 from nav.given_up import GivenUp
 from nav.map_jump import shift_at
-from nav.navigator import COMPLETE, RUNNING, STUCK, UNREACHABLE_START, DroppedFrontier, Plan
+from nav.navigator import (
+    COMPLETE,
+    RUNNING,
+    STUCK,
+    UNREACHABLE_START,
+    ChosenGoal,
+    DroppedFrontier,
+    Plan,
+)
 from nav.planner import CostField
 from nav.returns import Returns
 from nav.viewpoint import Viewpoint, ViewpointFinder, gain_at
@@ -31,6 +39,7 @@ NOTHING_NEW = "its viewpoints showed nothing new"
 NO_HEADWAY = "no headway on the way there"
 NO_VIEW = "no place in reach that was not tried sees it"
 NOT_WORTH_IT = "too little to see for the way there"
+NO_TIME_LEFT = "not visited before the run ended"
 """Why a frontier is given up."""
 
 
@@ -47,7 +56,7 @@ class FrontierExplorer:
     def __init__(self, config: ExplorerConfig | None = None) -> None:
         self.config = config or ExplorerConfig()
         self.status = RUNNING
-        self.dropped_frontiers: tuple[DroppedFrontier, ...] = ()
+        self.goals: tuple[ChosenGoal, ...] = ()
         self._costmap = Costmap(self.config.costmap)
         self._driver = Driver(self.config.driver)
         self._given_up = GivenUp()
@@ -58,6 +67,7 @@ class FrontierExplorer:
         self._task = Task.EXPLORE
         self._home: Pose | None = None
         self._target: Viewpoint | None = None
+        self._last_chosen: Viewpoint | None = None
         self._goal: np.ndarray | None = None
         self._frontiers: list[Frontier] = []
         self._tries = 0
@@ -72,6 +82,13 @@ class FrontierExplorer:
             path=self._driver.path_ahead if self._goal is not None else np.zeros((0, 2)),
             goal=self._goal,
             frontiers=np.array(middles).reshape(-1, 2),
+        )
+
+    @property
+    def dropped_frontiers(self) -> tuple[DroppedFrontier, ...]:
+        """The frontiers of the last decision that were given up; of a run cut short, all."""
+        return self._given_up.left_over(
+            self._frontiers, NO_TIME_LEFT if self.status == RUNNING else None
         )
 
     def command(self, grid: OccupancyGrid, pose_map: Pose, scan: LaserScan | None) -> Twist:
@@ -230,21 +247,33 @@ class FrontierExplorer:
         elif float(np.hypot(*(self._home - pose)[:2])) < 2.0 * self.config.home_tolerance:
             self._finish(COMPLETE)
         else:
-            self._start_recovery()
+            self._start_recovery(UNREACHABLE_START)
 
     def _set_out(self, field: CostField, goal: np.ndarray, target: Viewpoint | None) -> None:
         if self._goal is None or float(np.hypot(*(self._goal - goal))) > self.config.arrived:
             self._driver.restart_headway()
         if target is None or self._target is None or not target.is_near(self._target):
             self._tries = 0
+        if target is not None:
+            self._note_goal(target)
         self._goal, self._target = goal.copy(), target
         self._driver.set_path(field.path_to(goal))
 
-    def _start_recovery(self) -> None:
-        """Recover; give the frontier up after too many, the robot after far too many."""
+    def _note_goal(self, target: Viewpoint) -> None:
+        """Keep a goal that shows another frontier than the one before it; that one may grow."""
+        if self._last_chosen is None or not target.is_near(self._last_chosen):
+            goal = ChosenGoal.at(self._driver.time, target.place, target.frontier.middle)
+            self.goals = (*self.goals, goal)
+        self._last_chosen = target
+
+    def _start_recovery(self, in_vain: str = STUCK) -> None:
+        """Recover; give the frontier up after too many, the robot after far too many.
+
+        ``in_vain`` is the status when recovering has not helped.
+        """
         self._tries += 1
         if not self._driver.may_recover():
-            self._finish(STUCK)
+            self._finish(in_vain)
             return
         if self._target is not None and self._tries > self.config.recoveries_per_goal:
             self._given_up.give_up(self._target.frontier, NO_HEADWAY)
@@ -257,5 +286,4 @@ class FrontierExplorer:
 
     def _finish(self, status: str) -> None:
         self.status = status
-        self.dropped_frontiers = self._given_up.left_over(self._frontiers)
         self._goal = None

@@ -49,19 +49,29 @@ class GivenUp:
         self._chances = 2
         return True
 
-    def left_over(self, frontiers: Sequence[Frontier]) -> tuple[DroppedFrontier, ...]:
-        """Those of ``frontiers``, the ones still there, that were given up, with the reason."""
-        found = [(frontier, self._find(frontier)) for frontier in frontiers]
+    def left_over(
+        self, frontiers: Sequence[Frontier], otherwise: str | None = None
+    ) -> tuple[DroppedFrontier, ...]:
+        """Those of ``frontiers``, the ones still there, that were given up, with the reason.
+
+        The others are among them too if there is a reason for them, ``otherwise``.
+        """
+        reasons = [(frontier, self._reason(frontier) or otherwise) for frontier in frontiers]
         return tuple(
             DroppedFrontier(
                 x=float(frontier.middle[0]),
                 y=float(frontier.middle[1]),
                 size_m=float(frontier.size),
-                reason=record.reason,
+                reason=reason,
             )
-            for frontier, record in found
-            if record is not None and record.times >= GIVEN_UP
+            for frontier, reason in reasons
+            if reason is not None
         )
+
+    def _reason(self, frontier: Frontier) -> str | None:
+        """Why a frontier was given up, None if it was not."""
+        record = self._find(frontier)
+        return record.reason if record is not None and record.times >= GIVEN_UP else None
 
     def _add(self, frontier: Frontier, reason: str, times: float) -> None:
         record = self._find(frontier)

@@ -40,6 +40,9 @@ class MoversConfig:
     """Beams must have gone so much farther [m]: what matched poses may err by, and a leg."""
     share: float = 0.04
     """And so much for each metre: over three sigmas of the LDS-01's datasheet."""
+    whole: float = 0.25
+    """Returns of neighbouring beams up to this far apart are of one leg [m]: 0.07 m apart at most,
+    and the noise of two beams at 3 m, four sigmas."""
     same: float = 0.75
     """Points up to this far apart belong to one thing [m]: two legs in stride."""
     gate: float = 0.5
@@ -126,7 +129,8 @@ class Movers:
             if newest.stamp - view.stamp >= config.recent and len(view.ranges) == len(newest.ranges)
         ]
         offsets = newest.points - newest.origin
-        near = newest.points[np.hypot(offsets[:, 0], offsets[:, 1]) < config.reach]
+        is_near = np.hypot(offsets[:, 0], offsets[:, 1]) < config.reach
+        near = newest.points[is_near]
         if len(views) < LEAST_SCANS or len(near) == 0:
             return []
         counts = seen_through(
@@ -139,7 +143,10 @@ class Movers:
             config.margin,
             config.share,
         )
-        return _middles(near[counts >= LEAST_SCANS], config.same)
+        came = counts >= LEAST_SCANS
+        points, beams = near[came], newest.beams[is_near][came]
+        wide = _has_neighbour(points, beams, len(newest.ranges), config.whole)
+        return _middles(points[wide], config.same)
 
     def _follow(self, stamp: float, places: list[NDArray[np.float64]]) -> None:
         """Match what moves with what moved before; forget what has not been seen for long."""
@@ -163,7 +170,7 @@ class Movers:
         config = self.config
         surprise, elapsed = seen - expected, stamp - mover.stamp
         mover.place = expected + config.place_gain * surprise
-        # the first two places tell all that is known of the velocity
+        # of the velocity nothing is known yet: the first surprise tells more of it than later ones
         gain = max(config.speed_gain, 1.0 / (mover.sightings + 1.0))
         velocity = mover.velocity + gain * surprise / elapsed
         speed = float(np.hypot(*velocity))
@@ -171,17 +178,39 @@ class Movers:
         mover.stamp, mover.sightings = stamp, mover.sightings + 1
 
 
+def _has_neighbour(
+    points: NDArray[np.float64], beams: NDArray[np.int64], count: int, apart: float
+) -> NDArray[np.bool_]:
+    """Which points ``(n, 2)`` have one of the next or the last beam within ``apart`` [m].
+
+    A leg is met by two beams side by side even 3 m away; a chair's by one or none, and one that the
+    earlier scans missed has not come since.
+
+    Args:
+        points: Where beams met something [m].
+        beams: Which beams these are ``(n,)``, ascending.
+        count: How many beams there are all round.
+        apart: How far apart the returns of one thing are [m].
+    """
+    gaps = np.hypot(*(np.roll(points, -1, axis=0) - points).T)
+    is_next = (np.roll(beams, -1) - beams) % count == 1
+    beside = is_next & (gaps < apart)
+    return np.asarray(beside | np.roll(beside, 1))
+
+
 def _middles(points: NDArray[np.float64], same: float) -> list[NDArray[np.float64]]:
-    """Means of the groups of two points or more that hang together within ``same`` [m]."""
-    left = list(range(len(points)))
+    """Means of the groups of points that hang together within ``same`` [m]."""
+    left = np.ones(len(points), dtype=np.bool_)
     middles = []
-    while left:
-        group, grown = [left.pop()], 0
+    while left.any():
+        group = np.flatnonzero(left)[:1]
+        left[group] = False
+        grown = 0
         while grown < len(group):
-            gaps = np.hypot(*(points[left] - points[group[grown]]).T)
-            group += [index for index, gap in zip(left, gaps, strict=True) if gap < same]
-            left = [index for index in left if index not in set(group)]
+            gaps = np.hypot(*(points - points[group[grown]]).T)
+            joined = np.flatnonzero(left & (gaps < same))
+            left[joined] = False
+            group = np.concatenate((group, joined))
             grown += 1
-        if len(group) > 1:
-            middles.append(points[group].mean(axis=0))
+        middles.append(points[group].mean(axis=0))
     return middles

@@ -9,10 +9,6 @@ from numpy.typing import NDArray
 SMALLEST = 1e-9
 """Keeps a point at the sensor itself from dividing by zero [m]."""
 
-FULL_TURN = 360
-"""A scan of so many beams looks all round, as the LDS-01's does: its last beam is beside its first.
-Of others the beams beyond the ends are taken for failed."""
-
 
 @njit(cache=True)
 def seen_through(
@@ -51,20 +47,25 @@ def seen_through(
             step = abs(increments[j])
             if increments[j] < 0.0:
                 turn = -turn
+            around = max(1, math.floor(2.0 * math.pi / step + 0.5))
             beam = math.floor(turn % (2.0 * math.pi) / step + 0.5)
             span = max(1, math.ceil(min(aside / (distance * step + SMALLEST), beams / 4.0)))
-            counts[i] += _all_farther(
-                ranges[j], beam - span, beam + span, distance + margin + share * distance
-            )
+            least = distance + margin + share * distance
+            counts[i] += _all_farther(ranges[j], around, beam - span, beam + span, least)
     return counts
 
 
 @njit(cache=True)
-def _all_farther(ranges: NDArray[np.float64], first: int, last: int, least: float) -> bool:
-    """Whether the beams from ``first`` to ``last``, counted round the circle, went farther."""
-    beams = len(ranges)
+def _all_farther(
+    ranges: NDArray[np.float64], around: int, first: int, last: int, least: float
+) -> bool:
+    """Whether the beams from ``first`` to ``last`` went farther.
+
+    They are counted ``around`` the circle: more than there are if the sensor turned back while it
+    looked, when there is a gap between the last and the first, and fewer if it turned on.
+    """
     for k in range(first, last + 1):
-        beam = k % beams if beams >= FULL_TURN else k
-        if not (0 <= beam < beams and ranges[beam] > least):
+        beam = k % around
+        if not (beam < len(ranges) and ranges[beam] > least):
             return False
     return True

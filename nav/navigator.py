@@ -29,6 +29,31 @@ class DroppedFrontier:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class ChosenGoal:
+    """A place that the robot set out for, in the map frame as it then was."""
+
+    time: float
+    """When, by the scans' stamps [s]."""
+    x: float
+    """Where it is [m]."""
+    y: float
+    frontier_x: float | None = None
+    """Middle of the frontier that is to be seen from there [m]; None of a place without one."""
+    frontier_y: float | None = None
+
+    @classmethod
+    def at(
+        cls, time: float, place: NDArray[np.float64], frontier: NDArray[np.float64] | None = None
+    ) -> "ChosenGoal":
+        """The goal at a place ``(2,)``, chosen at a time [s] for a frontier's middle ``(2,)``."""
+        x, y = place.tolist()
+        if frontier is None:
+            return cls(time=time, x=x, y=y)
+        frontier_x, frontier_y = frontier.tolist()
+        return cls(time=time, x=x, y=y, frontier_x=frontier_x, frontier_y=frontier_y)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Plan:
     """What a navigator has in mind, for drawing and for reports."""
 
@@ -54,6 +79,10 @@ class Navigator(Protocol):
     @property
     def dropped_frontiers(self) -> tuple[DroppedFrontier, ...]:
         """Frontiers given up for good, with the reason."""
+
+    @property
+    def goals(self) -> tuple[ChosenGoal, ...]:
+        """What it set out for until now, in order, without the way home; none of one that roams."""
 
     def command(self, grid: OccupancyGrid, pose_map: Pose, scan: LaserScan | None) -> Twist:
         """The velocity for the next control period.

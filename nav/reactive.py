@@ -12,7 +12,7 @@ from mapping.geometry import Pose
 from mapping.grid import OccupancyGrid
 from mapping.messages import LaserScan, Twist
 from nav.motion_limits import MotionLimits
-from nav.navigator import RUNNING, DroppedFrontier, Plan
+from nav.navigator import RUNNING, ChosenGoal, DroppedFrontier, Plan
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -42,6 +42,7 @@ class Reactive:
         self.plan = Plan()
         self.status = RUNNING
         self.dropped_frontiers: tuple[DroppedFrontier, ...] = ()
+        self.goals: tuple[ChosenGoal, ...] = ()
         self._last = Twist()
         self._turning = 0.0
 

@@ -1,4 +1,4 @@
-"""Turns a person's commands into velocities, as turtlebot3_teleop does, or hands over to autonomy."""
+"""Turns what a person wants into velocities as turtlebot3_teleop does, or lets autonomy drive."""
 
 from collections.abc import Callable
 from enum import Enum, auto
@@ -7,7 +7,7 @@ from mapping.burger import MAX_ANGULAR_SPEED, MAX_LINEAR_SPEED
 from mapping.geometry import Pose
 from mapping.grid import OccupancyGrid
 from mapping.messages import LaserScan, Twist
-from nav.navigator import RUNNING, DroppedFrontier, Navigator, Plan
+from nav.navigator import RUNNING, ChosenGoal, DroppedFrontier, Navigator, Plan
 
 LINEAR_STEP, ANGULAR_STEP = 0.01, 0.1
 """What one press changes [m/s, rad/s] (turtlebot3_teleop teleop_keyboard.py@da785b7)."""
@@ -60,6 +60,7 @@ class Teleop:
         self._make_autonomy = make_autonomy
         self._autonomy: Navigator | None = None
         self._dropped: tuple[DroppedFrontier, ...] = ()
+        self._goals: tuple[ChosenGoal, ...] = ()
 
     @property
     def is_autonomous(self) -> bool:
@@ -75,6 +76,11 @@ class Teleop:
     def dropped_frontiers(self) -> tuple[DroppedFrontier, ...]:
         """What the newest autonomous drive gave up."""
         return self._dropped if self._autonomy is None else self._autonomy.dropped_frontiers
+
+    @property
+    def goals(self) -> tuple[ChosenGoal, ...]:
+        """What autonomy set out for, each time it drove; a person's goals are not known."""
+        return self._goals if self._autonomy is None else self._goals + self._autonomy.goals
 
     def tell(self, command: TeleopCommand) -> None:
         """Take a command; one to drive takes over from autonomy, beginning at rest."""
@@ -107,7 +113,7 @@ class Teleop:
 
     def _take_over(self) -> None:
         """Stand still under the person's command."""
-        self._dropped = self.dropped_frontiers
+        self._dropped, self._goals = self.dropped_frontiers, self.goals
         self._autonomy, self.speeds = None, Twist()
 
 

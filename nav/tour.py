@@ -17,10 +17,7 @@ ROUNDING = 1e-9
 
 
 def best_order(
-    first_legs: NDArray[np.float64],
-    legs: NDArray[np.float64],
-    weights: NDArray[np.float64],
-    end_weight: float = 0.0,
+    first_legs: NDArray[np.float64], legs: NDArray[np.float64], weights: NDArray[np.float64]
 ) -> NDArray[np.int64]:
     """The order ``(n,)`` in which to visit n places, by greedy insertion and local search.
 
@@ -28,10 +25,9 @@ def best_order(
         first_legs: Time from here to each place ``(n,)`` [s].
         legs: Time from each place (row) to each other ``(n, n)`` [s].
         weights: What each place is worth ``(n,)``.
-        end_weight: What an early end of the tour is worth besides.
     """
     order: NDArray[np.int64] = _by_ratio(first_legs, legs, weights)
-    _improve(order, first_legs, legs, weights, end_weight)
+    _improve(order, first_legs, legs, weights)
     return order
 
 
@@ -41,15 +37,14 @@ def latency(
     first_legs: NDArray[np.float64],
     legs: NDArray[np.float64],
     weights: NDArray[np.float64],
-    end_weight: float = 0.0,
 ) -> float:
-    """Sum over the places of worth times arrival time [s], and that of the end."""
+    """Sum over the places of worth times arrival time [s]."""
     time = first_legs[order[0]]
     total = weights[order[0]] * time
     for k in range(1, len(order)):
         time += legs[order[k - 1], order[k]]
         total += weights[order[k]] * time
-    return float(total + end_weight * time)
+    return float(total)
 
 
 @njit(cache=True)
@@ -79,11 +74,10 @@ def _improve(
     first_legs: NDArray[np.float64],
     legs: NDArray[np.float64],
     weights: NDArray[np.float64],
-    end_weight: float,
 ) -> None:
     """Reverse stretches (2-opt) and move places (or-opt) while that helps, in place."""
     count = len(order)
-    best = latency(order, first_legs, legs, weights, end_weight)
+    best = latency(order, first_legs, legs, weights)
     improved = True
     while improved:
         improved = False
@@ -92,10 +86,10 @@ def _improve(
                 if i == j:
                     continue
                 trial = _moved(order, i, j)
-                cost = latency(trial, first_legs, legs, weights, end_weight)
+                cost = latency(trial, first_legs, legs, weights)
                 if i < j:
                     reversed_ = _reversed(order, i, j)
-                    other = latency(reversed_, first_legs, legs, weights, end_weight)
+                    other = latency(reversed_, first_legs, legs, weights)
                     if other < cost:
                         trial, cost = reversed_, other
                 if cost < best * (1.0 - ROUNDING):

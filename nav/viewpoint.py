@@ -32,7 +32,7 @@ class ViewpointConfig:
     the way [1/m]: 10 m of way for 0.6 % of the map."""
     always_worth: float = 1.0
     """One that would show this much is worth any way [m2]: behind it may lie a room."""
-    view_distances: tuple[float, ...] = (0.5, 1.0)
+    view_distances: tuple[float, ...] = (0.3, 0.5, 1.0)
     """How far from a frontier its viewpoints may lie [m]."""
     view_clearance: float = 0.14
     """Least clearance of a viewpoint [m]: enough to turn on the spot."""

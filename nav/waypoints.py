@@ -18,7 +18,7 @@ from mapping.messages import LaserScan, Twist
 from nav.costmap import Costmap, CostmapConfig
 from nav.driver import Driver
 from nav.driver_config import DriverConfig
-from nav.navigator import COMPLETE, RUNNING, STUCK, DroppedFrontier, Plan
+from nav.navigator import COMPLETE, RUNNING, STUCK, ChosenGoal, DroppedFrontier, Plan
 from nav.planner import CostField
 from nav.route import checked_route
 from nav.unknown_ground import with_unknown_ground
@@ -56,6 +56,7 @@ class Waypoints:
         self.config = config or WaypointsConfig()
         self.status = RUNNING
         self.dropped_frontiers: tuple[DroppedFrontier, ...] = ()
+        self.goals: tuple[ChosenGoal, ...] = ()
         self._places = checked_route(places)
         self._next = 0
         self._costmap = Costmap(self.config.costmap)
@@ -124,6 +125,8 @@ class Waypoints:
         self._costmap.refresh(grid, pose[:2], reach)
         self._planned_at = self._looked_at = driver.time
         place = self._places[self._next]
+        if len(self.goals) == self._next:
+            self.goals = (*self.goals, ChosenGoal.at(driver.time, place))
         ground = with_unknown_ground(self._costmap, np.array([place, pose[:2]]))
         field = CostField.around(ground, pose[:2])
         goal = place if field.reaches(place) else _nearest_reached(field, place)

@@ -29,6 +29,12 @@ class YieldingConfig:
     room: float = ROBOT_RADIUS + 0.28
     """Distance of centres to keep [m]: the robot's radius, a person's legs (0.16 m from the middle
     to the outside) and 0.12 m for what they do next."""
+    touch: float = ROBOT_RADIUS + 0.20
+    """Distance of centres at which legs may touch the robot [m]: it drives no nearer than this. Its
+    corners lie 0.02 m outside its radius, and a slow walker's feet 0.02 m outside the stride."""
+    swing: float = 0.07
+    """A turning robot's rear corners come nearer to what is behind it by so much for every radian
+    [m]: they lie so far to either side."""
     stride: float = 0.3
     """A foot is as far ahead or behind as the middle goes in this time [s]."""
     horizon: float = 2.4
@@ -84,9 +90,11 @@ class Yielding:
         movers = [mover for mover in movers if not mover.is_known_to_stand]
         if not movers:
             return wanted
-        if time < self._aside_until and allowed(self._aside):
-            return self._aside
         outlook = _Outlook(pose, time, movers, self.config)
+        if time < self._aside_until:
+            if allowed(self._aside) and not outlook.drives_into(self._aside):
+                return self._aside
+            self._aside_until = -math.inf
         for share in SHARES:
             twist = Twist(linear_x=share * wanted.linear_x, angular_z=share * wanted.angular_z)
             if outlook.room(twist, self.config.committed) >= self.config.room:
@@ -105,7 +113,7 @@ class Yielding:
         for speed, turn in product(speeds, turns):
             twist = Twist(linear_x=speed, angular_z=turn)
             room = outlook.room(twist, config.aside_time)
-            if room > most and allowed(twist):
+            if room > most and allowed(twist) and not outlook.drives_into(twist):
                 best, most = twist, room
         return best
 
@@ -116,7 +124,7 @@ class _Outlook:
     def __init__(
         self, pose: Pose, time: float, movers: Sequence[Mover], config: YieldingConfig
     ) -> None:
-        self._pose = pose
+        self._pose, self._config = pose, config
         self._times = np.arange(0.0, config.horizon + 0.5 * config.step, config.step)
         leads = np.arange(-config.stride, config.stride + 0.5 * config.step, config.step)
         moments = time + self._times[:, None] + leads
@@ -128,11 +136,25 @@ class _Outlook:
 
     def room(self, twist: Twist, driven_for: float) -> float:
         """The least distance of centres [m] when a twist is driven so long [s], then none."""
+        return float((self._gaps(twist, driven_for).min(axis=2) - self._doubt).min())
+
+    def drives_into(self, twist: Twist) -> bool:
+        """Whether a twist soon brings the robot within touch, and nearer than standing would.
+
+        Where a contact cannot be helped, the robot at least stands.
+        """
+        soon = self._times <= self._config.committed
+        gaps, standing = self._gaps(twist, self._config.committed), self._gaps(Twist(), 0.0)
+        swing = self._config.swing * abs(twist.angular_z) * self._times[:, None]
+        nearer = (gaps < self._config.touch) & (gaps < standing + swing)
+        return bool(nearer[:, soon].any())
+
+    def _gaps(self, twist: Twist, driven_for: float) -> NDArray[np.float64]:
+        """Distances of centres to everybody, at every time and part of a stride ``(m, t, s)``."""
         driven = np.minimum(self._times, driven_for)
         half_turn = 0.5 * twist.angular_z * driven
         chord = twist.linear_x * driven * np.sinc(half_turn / np.pi)
         heading = self._pose[2] + half_turn
         way = chord[:, None] * np.column_stack((np.cos(heading), np.sin(heading)))
         robot: NDArray[np.float64] = self._pose[:2] + way
-        gaps = np.linalg.norm(self._places - robot[:, None], axis=3).min(axis=2)
-        return float((gaps - self._doubt).min())
+        return np.asarray(np.linalg.norm(self._places - robot[:, None], axis=3))

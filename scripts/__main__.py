@@ -16,6 +16,7 @@ VERBS = {
     "report": "one HTML page of tables, plots and worst maps from run folders",
     "calibrate": "the thesis's two sensor experiments: how often is the lidar right?",
     "drive": "drive by hand in a terminal, the map growing beside it",
+    "thesis": "the thesis's figures 5.1 to 5.11 and Table 5.3, regenerated, on one page",
     "bench": "how fast each stage and the whole loop run on this machine",
 }
 """Verb -> one line about it; each verb is the module of that name in this folder."""

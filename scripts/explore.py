@@ -7,8 +7,10 @@ from typing import Annotated, Any
 import tyro
 
 from envs.worlds import world_label
-from evaluation.episode import Episode, EpisodeConfig, Progress, check_episode, run_episode
+from evaluation.animation import Animation
+from evaluation.episode import Episode, EpisodeConfig, check_episode, run_episode
 from evaluation.episode_folder import write_run
+from evaluation.progress import Progress
 from evaluation.recorder import Recorder
 from evaluation.run_folder import run_folder
 from scripts.arguments import parse
@@ -25,6 +27,8 @@ class Explore:
     """Folder to write; default runs/WORLD-MAPPER-seedN."""
     record: bool = False
     """Write the messages of the run as well: log.carmen and a ROS 2 bag in the folder bag."""
+    animate: bool = False
+    """Draw the map as it grows, and the robot in it, as episode.gif."""
 
 
 def run(arguments: list[str]) -> int:
@@ -33,12 +37,14 @@ def run(arguments: list[str]) -> int:
     config = options.episode
     out = options.out or Path("runs") / _folder_name(config)
     recorder = Recorder() if options.record else None
+    animation = Animation() if options.animate else None
     with run_folder(out):
         compile_if_needed(config.mapper, simulates=True, check=lambda: check_episode(config))
-        result = write_run(_watch(config, recorder), out)
+        result = write_run(_watch(config, recorder, animation), out, animation)
     print(summary(result))
-    recorded = ", log.carmen, bag" if options.record else ""
-    print(f"map, picture, trajectories{recorded} and result.json are in {out}/")
+    more = ", log.carmen, bag" if options.record else ""
+    more += ", episode.gif" if options.animate else ""
+    print(f"map, picture, trajectories{more} and result.json are in {out}/")
     return 0 if result["stop_reason"] == "complete" else 1
 
 
@@ -67,18 +73,23 @@ def _folder_name(config: EpisodeConfig) -> str:
     return f"{world_label(config.world)}-{config.mapper}-seed{config.seed}"
 
 
-def _watch(config: EpisodeConfig, recorder: Recorder | None) -> Episode:
+def _watch(
+    config: EpisodeConfig, recorder: Recorder | None, animation: Animation | None
+) -> Episode:
     """Run the episode, its map growing before the user's eyes if there is a terminal."""
-    if not can_draw():
+    live_map = LiveMap(f"exploring {Path(config.world).stem}") if can_draw() else None
+    if live_map is None and animation is None:
         return run_episode(config, recorder=recorder)
-    live_map = LiveMap(f"exploring {Path(config.world).stem}")
     newest: list[Progress] = []
 
     def show(progress: Progress) -> None:
-        newest[:] = [progress]
-        live_map.show(progress)
+        if animation is not None:
+            animation.note(progress)
+        if live_map is not None:
+            newest[:] = [progress]
+            live_map.show(progress)
 
     episode = run_episode(config, show, recorder=recorder)
-    for progress in newest:
-        live_map.draw(progress)
+    if live_map is not None and newest:
+        live_map.draw(newest[0])
     return episode

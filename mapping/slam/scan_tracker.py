@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mapping.geometry import Pose, between, compose
-from mapping.messages import Imu, Odometry
+from mapping.messages import Imu, Odometry, accelerations
 from mapping.slam.fusion import FusedTrack
 from mapping.slam.keyframe_graph import KeyframeGraph, view_of
 from mapping.slam.local_map import LocalMap
@@ -18,6 +18,15 @@ from mapping.slam.scan_matcher import match_scan
 
 START_COVARIANCE = np.diag(np.square([0.004, 0.004, 0.0015]))
 """How sure the first pose is: as sure as the first match will be [m^2, m^2, rad^2]."""
+
+SHOVE_ACCELERATION = 3.5
+"""No drive accelerates a robot so hard [m/s2]: a Burger's brakes and turns reach 3.0."""
+
+SHOVE_TIME = 1.0
+"""So long after such a jolt the robot may still be pushed about, and scans be bent by it [s]."""
+
+SHOVE_COVARIANCE = np.diag(np.square([0.1, 0.1, 0.15]))
+"""How far it may be pushed between two scans [m^2, m^2, rad^2]."""
 
 STILL_SHIFT, STILL_TURN = 5e-4, 5e-4
 """A robot that moved less than this [m, rad] since its last scan is where it was."""
@@ -47,14 +56,26 @@ class ScanTracker:
         self._track = FusedTrack(config.fusion)
         self._calibration = OdometryCalibration(config.calibration)
         self._has_gyro = False
+        self._newest_imu = self._shoved_until = -math.inf
         self._scan_odom: Pose | None = None
 
     def add(self, odometry: Sequence[Odometry], imu: Sequence[Imu]) -> None:
         """Take the messages of one control period."""
         self._track.add(odometry, imu)
+        self._note_shoves(imu)
         if not self._has_gyro and len(imu) > 0:
             self._has_gyro = True
             self._calibration.trust_heading()
+
+    def _note_shoves(self, imu: Sequence[Imu]) -> None:
+        """Notice by the accelerometer when somebody has run into the robot: its wheels do not."""
+        rows = accelerations(imu)
+        if len(rows) == 0:
+            return
+        self._newest_imu = float(rows[-1, 0])
+        hard = np.hypot(rows[:, 1], rows[:, 2]) > SHOVE_ACCELERATION
+        if np.any(hard):
+            self._shoved_until = float(rows[hard, 0].max()) + SHOVE_TIME
 
     def poses_at(self, stamps: ArrayLike) -> Pose | None:
         """Poses ``(n, 3)`` of the odometry at moments ``(n,)`` [s], None when it does not say."""
@@ -74,18 +95,21 @@ class ScanTracker:
             self._track.mark()
             return 0.0
         motion = between(last, pose_odom)
-        if _is_still(motion):
+        shoved = self._newest_imu < self._shoved_until
+        if _is_still(motion) and not shoved:
             return 1.0
         spread, self._scan_odom = self._track.motion_covariance(), pose_odom
         self._track.mark()
         corrected = self._calibration.corrected(motion)
         predicted = compose(self.pose, corrected)
         spread = self._calibration.widened(motion, spread, has_gyro=self._has_gyro)
+        if shoved:
+            spread = spread + SHOVE_COVARIANCE
         self._reckon(corrected, spread)
         covariance = _carried(self.covariance, self.pose, predicted, spread)
         self.local.follow(near, view_of(predicted, cloud))
         match = match_scan(self.local.field, cloud, predicted, covariance, self._matcher)
-        if not match.refused:
+        if not match.refused and not shoved:
             noise = covariance + match.seen_covariance
             self._calibration.learn(motion, between(self.pose, match.seen), noise)
         self.pose, self.covariance = match.pose, match.covariance

@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 from envs.floor_plan import Route
-from evaluation.episode import EpisodeConfig, Progress, run_episode
+from evaluation.episode import EpisodeConfig, run_episode
 from evaluation.episode_folder import write_run
+from evaluation.progress import Progress
 from evaluation.result import TIMING_KEYS
 from evaluation.warm_up import TINY_ROOM
 from mapping.errors import TestbedError
@@ -26,7 +27,8 @@ DESIGN_KEYS = set(
     "false_free wall_thickness_ratio ate_rmse_m ate_max_m yaw_error_max_deg ate_aligned_rmse_m "
     "ate_online_rmse_m "
     "rpe_trans_rmse_m rpe_rot_rmse_deg map_updates scans_dropped map_update_ms_p50 "
-    "map_update_ms_p99 map_update_rate_hz map_file_kb peak_rss_mb home_distance_m "
+    "map_update_ms_p99 map_update_rate_hz map_update_rate_min_hz map_update_rate_median_hz "
+    "map_file_kb peak_rss_mb home_distance_m "
     "dropped_frontiers map_length_error map_reloads contacts_by_people ghost_area_m2".split()
 )
 
@@ -39,6 +41,7 @@ FILES = {
     "trajectory.tum",
     "ground_truth.tum",
     "odometry.tum",
+    "goals.csv",
     "graph.g2o",
 }
 

@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 from mcap.reader import make_reader
 
-from evaluation.episode import EpisodeConfig, Progress, run_episode
+from evaluation.episode import EpisodeConfig, run_episode
 from evaluation.episode_folder import write_run
+from evaluation.progress import Progress
 from evaluation.recorder import Recorder
 from evaluation.warm_up import TINY_ROOM
 from mapping.errors import TestbedError

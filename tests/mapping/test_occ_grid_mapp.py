@@ -1,8 +1,11 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from mapping.errors import TestbedError
-from mapping.grid import FREE, OCCUPIED
+from mapping.grid import FREE, OCCUPIED, UNKNOWN
 from mapping.messages import LaserScan, Odometry, Twist
 from mapping.occ_grid_mapp import OccGridMapp, OccGridMappConfig
 from mapping.sensor_model import LOG_ODDS_FREE, LOG_ODDS_OCCUPIED
@@ -80,6 +83,40 @@ def test_a_scan_while_turning_is_dropped_unless_the_gate_is_off() -> None:
     assert (open_.updates, open_.scans_dropped) == (1, 0)
 
 
+def test_a_snapshot_is_the_drawn_part_of_the_map_and_stays_as_it_was() -> None:
+    mapper = OccGridMapp(SMALL, start_pose_map=(0.5, 0.0, 0.0))
+    mapper.update(scan(0.0, {0: 1.0, 90: np.inf}), odometry(0.0))
+    snapshot = mapper.snapshot()
+    before = mapper.grid.log_odds.copy()
+    mapper.update(scan(0.2, {180: 3.3}), odometry(0.2))
+    copied = snapshot.grid
+    assert copied.shape[0] * copied.shape[1] < before.size
+    row, column = mapper.grid.world_to_cell(copied.cell_to_world((0, 0)))
+    window = slice(row, row + copied.shape[0]), slice(column, column + copied.shape[1])
+    assert np.array_equal(copied.log_odds, before[window])
+    assert np.count_nonzero(copied.log_odds) == np.count_nonzero(before), "all that was drawn"
+    assert np.array_equal(copied.states(), mapper_states(before, mapper)[window])
+    assert snapshot.path == pytest.approx(np.array([[0.5, 0.0, 0.0]]))
+    assert snapshot.start_pose_map == pytest.approx([0.5, 0.0, 0.0])
+
+
+def mapper_states(log_odds: NDArray[np.float32], mapper: OccGridMapp) -> NDArray[np.int8]:
+    grid = mapper.grid.copy()
+    grid.log_odds = log_odds
+    return grid.states()
+
+
+def test_a_map_of_which_nothing_is_drawn_has_a_snapshot_too() -> None:
+    assert not OccGridMapp(SMALL).snapshot().grid.log_odds.any()
+
+
+def test_the_threshold_of_states_is_a_setting() -> None:
+    mapper = OccGridMapp(replace(SMALL, state_threshold=5.0))
+    mapper.update(scan(0.0, {0: 1.0}), odometry(0.0))
+    cells = tuple(mapper.grid.world_to_cell([[1.0, 0.0], [0.5, 0.0]]).T)
+    assert mapper.grid.states()[cells].tolist() == [UNKNOWN, FREE], "4.70 and -5.11"
+
+
 def test_log_odds_are_not_clamped() -> None:
     mapper = OccGridMapp(SMALL)
     for k in range(30):
@@ -109,6 +146,8 @@ def test_a_map_of_a_drive_shows_the_room() -> None:
         {"log_odds_occupied": np.nan},
         {"max_range": -1.0},
         {"turn_gate": -0.1},
+        {"state_threshold": 0.0},
+        {"cells": 0},
         {"lidar_pose_base": (0.0, np.inf, 0.0)},
     ],
 )

@@ -8,6 +8,7 @@ from PIL import Image
 from mapping.errors import TestbedError
 from mapping.grid import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
 from mapping.io.map_server import MapFile
+from mapping.path_plot import GOAL_COLOUR, LEFT_OVER_COLOUR
 from mapping.plot import draw_map, save_map_picture
 from tests.mapping.arena import arena_truth
 
@@ -26,6 +27,25 @@ def test_the_picture_has_the_three_states_and_the_path(tmp_path: Path) -> None:
     seen = {tuple(int(v) for v in colour) for colour in np.unique(pixels, axis=0)}
     black, white, blue, red = (0, 0, 0), (255, 255, 255), (158, 202, 225), (215, 25, 28)
     assert {black, white, blue, red} <= seen
+
+
+def test_goals_and_frontiers_left_over_are_marked_and_explained(tmp_path: Path) -> None:
+    path = np.array([[-1.0, 0.0], [1.0, 0.5]])
+    places = {"goals": [[0.0, 0.0], [1.0, -0.5]], "left_over": [[-1.5, 1.0]]}
+    for name, drawn in (("without.png", {}), ("with.png", places)):
+        save_map_picture(tmp_path / name, small_map(), path=path, **drawn)
+    marks = [tuple(bytes.fromhex(colour[1:])) for colour in (GOAL_COLOUR, LEFT_OVER_COLOUR)]
+    for name, are_there in (("without.png", False), ("with.png", True)):
+        pixels = np.asarray(Image.open(tmp_path / name).convert("RGB"))
+        for mark in marks:
+            assert np.all(pixels == mark, axis=-1).any() == are_there
+
+
+def test_a_narrow_map_is_drawn_larger(tmp_path: Path) -> None:
+    for name, rows in (("square.png", 200), ("narrow.png", 50)):
+        save_map_picture(tmp_path / name, small_map(rows=rows, columns=200))
+    square, narrow = (Image.open(tmp_path / name).size for name in ("square.png", "narrow.png"))
+    assert narrow[0] > 1.3 * square[0]
 
 
 def test_axes_are_in_metres_with_equal_aspect() -> None:

@@ -169,5 +169,7 @@ def test_the_reactive_navigator_drives_when_it_is_open_and_turns_to_the_open_sid
 
 
 def test_an_unknown_navigator_is_refused_with_the_known_names() -> None:
-    with pytest.raises(TestbedError, match="frontier, nearest, explore_lite, gain_cost, reactive, waypoints"):
+    with pytest.raises(
+        TestbedError, match="frontier, nearest, explore_lite, gain_cost, reactive, waypoints"
+    ):
         make_navigator("magic")

@@ -10,6 +10,7 @@ import termios
 from pathlib import Path
 
 import pytest
+from PIL import Image
 
 from scripts.__main__ import run
 
@@ -24,6 +25,15 @@ def test_in_a_pipe_it_prints_the_result_and_nothing_else(
     assert "empty_room: time_limit after 4 s" in captured.out
     assert all(line.startswith("compiling") for line in captured.err.splitlines())
     assert json.loads((tmp_path / "result.json").read_text())["stop_reason"] == "time_limit"
+
+
+def test_an_animated_run_says_that_it_left_a_moving_picture(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run([*WORDS, "--animate", "--out", str(tmp_path)]) == 1, "out of time"
+    assert "trajectories, episode.gif and result.json" in capsys.readouterr().out
+    with Image.open(tmp_path / "episode.gif") as picture:
+        assert picture.n_frames >= 4
 
 
 def test_on_a_terminal_the_map_grows_before_the_users_eyes(tmp_path: Path) -> None:

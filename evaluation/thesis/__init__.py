@@ -1,0 +1,1 @@
+"""Turns two simulated drives into one page: the thesis's figures, and whether they come out so."""

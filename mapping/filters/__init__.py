@@ -1,0 +1,1 @@
+"""The filters of probabilistic robotics: a belief, a control and a measurement into a belief."""

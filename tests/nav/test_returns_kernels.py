@@ -1,0 +1,80 @@
+"""The cells of returns and of the lines between them, against a plain walk along each line."""
+
+import math
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from nav.returns_kernels import cells_between
+
+GAP = 0.25
+LATTICE = (-2.0, -1.0, 0.05)
+
+Cells = set[tuple[int, int]]
+
+
+def cell_of(point: NDArray[np.float64]) -> tuple[int, int]:
+    left, bottom, edge = LATTICE
+    return math.floor((point[1] - bottom) / edge), math.floor((point[0] - left) / edge)
+
+
+def plain_cells(points: NDArray[np.float64], beams: list[int], count: int) -> Cells:
+    cells = {cell_of(point) for point in points}
+    at = dict(zip(beams, points, strict=True))
+    for beam, point in at.items():
+        after = at.get((beam + 1) % count)
+        if after is None or math.dist(point, after) > GAP:
+            continue
+        parts = max(1, math.ceil(2.0 * math.dist(point, after) / LATTICE[2]))
+        cells |= {cell_of(point + k / parts * (after - point)) for k in range(parts)}
+    return cells
+
+
+def found_cells(points: NDArray[np.float64], beams: list[int], count: int) -> Cells:
+    cells = cells_between(points, np.array(beams, dtype=np.int64), count, GAP, LATTICE)
+    return {(int(row), int(column)) for row, column in cells}
+
+
+@given(seed=st.integers(0, 10_000), kept=st.integers(0, 60))
+@settings(max_examples=60)
+def test_they_equal_those_of_a_plain_walk(seed: int, kept: int) -> None:
+    """A closed wall round the lattice's corner: neighbours 5 to 60 cm apart, some beams gone."""
+    rng = np.random.default_rng(seed)
+    beams = sorted(rng.choice(60, kept, replace=False).tolist())
+    angles = 2.0 * np.pi * np.array(beams) / 60.0
+    away = rng.uniform(0.5, 3.5) * rng.uniform(0.97, 1.03, kept)
+    points = np.column_stack((away * np.cos(angles), away * np.sin(angles))).reshape(-1, 2)
+    assert found_cells(points, beams, 60) == plain_cells(points, beams, 60)
+
+
+@given(angle=st.floats(-math.pi, math.pi), length=st.floats(0.01, GAP - 1e-6))
+def test_no_cell_of_a_line_is_jumped_over(angle: float, length: float) -> None:
+    """From cell to cell it goes at most to a diagonal neighbour."""
+    start = np.array([0.013, 0.027])
+    end = start + length * np.array([math.cos(angle), math.sin(angle)])
+    cells = cells_between(np.array([start, end]), np.array([4, 5]), 360, GAP, LATTICE)
+    assert tuple(cells[0]) == cell_of(start)
+    assert tuple(cells[-1]) == cell_of(end)
+    assert np.abs(np.diff(cells, axis=0)).max() <= 1
+
+
+def test_lines_join_neighbouring_beams_alone() -> None:
+    points = np.array([[0.0, 0.0], [0.2, 0.0], [0.4, 0.0]])
+    ends = {cell_of(point) for point in points}
+    assert found_cells(points, [4, 6, 8], 360) == ends, "a beam between them failed or went on"
+    joined = found_cells(points, [4, 5, 8], 360)
+    assert joined > ends
+    assert max(column for _, column in joined - ends) < cell_of(points[1])[1]
+
+
+def test_the_last_beam_is_the_first_ones_neighbour() -> None:
+    points = np.array([[0.0, 0.0], [0.2, 0.0]])
+    assert len(found_cells(points, [0, 359], 360)) == 5
+    assert len(found_cells(points, [0, 358], 360)) == 2
+
+
+def test_of_no_or_one_return_there_is_no_line() -> None:
+    assert found_cells(np.zeros((0, 2)), [], 360) == set()
+    assert found_cells(np.zeros((1, 2)), [0], 1) == {cell_of(np.zeros(2))}
