@@ -9,7 +9,7 @@ VERBS = {
     "replay": "map a recorded log, score what can be scored, write a run folder",
     "optimize": "the poses of a g2o file that agree best with its measurements",
     "compare": "score a map file against a floor plan or another map",
-    "localize": "find the robot on a given map: particles, a histogram or an extended Kalman filter",
+    "localize": "find the robot on a given map by particles, a histogram or an EKF",
     "world": "list, show and convert floor plans",
     "scenario": "list scenarios; run them, judge them by their criteria, write junit.xml",
     "sweep": "explore every combination of worlds, mappers, navigators and seeds, table them",
