@@ -147,14 +147,7 @@ def run_localization(
     rng = np.random.default_rng([config.seed, 0])
     places = _Places(plan)
     start = places.draw(rng)
-    environment = gymnasium.make(
-        ENVIRONMENT,
-        world=plan,
-        lidar=config.lidar,
-        odometry=config.odometry,
-        odometry_yaw=config.odometry_yaw,
-        max_episode_steps=round(config.end / CONTROL_PERIOD) + 1,
-    )
+    environment = _make_environment(config, plan)
     try:
         localizer = make_localizer(
             config.filter,
@@ -169,6 +162,29 @@ def run_localization(
         return recording.run(perf_counter() - started)
     finally:
         environment.close()
+
+
+def check_localization(config: LocalizationConfig) -> None:
+    """Refuse what `run_localization` would refuse, without running anything.
+
+    Raises:
+        TestbedError: If the config names something that does not exist or cannot be used.
+    """
+    known_map(read_map(config.map))
+    plan = load_world(config.world)
+    _Places(plan)
+    _make_environment(config, plan).close()
+
+
+def _make_environment(config: LocalizationConfig, plan: FloorPlan) -> gymnasium.Env[Any, Any]:
+    return gymnasium.make(
+        ENVIRONMENT,
+        world=plan,
+        lidar=config.lidar,
+        odometry=config.odometry,
+        odometry_yaw=config.odometry_yaw,
+        max_episode_steps=round(config.end / CONTROL_PERIOD) + 1,
+    )
 
 
 def _drive(

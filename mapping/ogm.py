@@ -43,9 +43,9 @@ them failed, or the robot turned between the scan's last beam and its first."""
 class OgmConfig:
     """Settings of the mapper, tuned as the module tells."""
 
-    miss: float = 1.7
+    miss: float = 1.6
     """Log odds that a cell loses in a scan that saw it free; two such scans call it free."""
-    hit: float = 2.7
+    hit: float = 2.4
     """Log odds that a cell gains from a reading whose standard deviation is a cell or less; a
     noisier one, which may be off by as many cells as it is noisier, is worth that much less."""
     lowest: float = -6.5
@@ -54,7 +54,7 @@ class OgmConfig:
     """Upper clamp; a thing that goes is off the map after three scans, 0.6 s."""
     clear_sigmas: float = 2.0
     """Before a reading, this many times the noise that exceeds ``sharp_cells`` is not cleared."""
-    sharp_cells: float = 2.5
+    sharp_cells: float = 1.6
     """Up to this standard deviation, in cells, readings of one wall fall into the same few cells
     often enough to outweigh those that went too far, and space is cleared up to the reading."""
     link: float = 0.1

@@ -11,7 +11,12 @@ from tqdm import tqdm
 from evaluation.kernel_cache import forget_stale_kernels
 from evaluation.localization_folder import write_localization
 from evaluation.localization_result import is_found
-from evaluation.localization_run import LocalizationConfig, LocalizationRun, run_localization
+from evaluation.localization_run import (
+    LocalizationConfig,
+    LocalizationRun,
+    check_localization,
+    run_localization,
+)
 from evaluation.localization_warm_up import compile_localizer, is_warm
 from evaluation.run_folder import run_folder
 from scripts.arguments import is_terminal, parse
@@ -70,6 +75,7 @@ def _watch(config: LocalizationConfig) -> LocalizationRun:
     """Run the localisation, a bar growing before the user's eyes if there is a terminal."""
     forget_stale_kernels()
     if not is_warm(config.filter):
+        check_localization(config)
         print(
             f"compiling the kernels of filter {config.filter}, once: up to a minute ...",
             file=sys.stderr,

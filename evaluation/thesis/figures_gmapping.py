@@ -27,9 +27,9 @@ RATE_TOLERANCE = 0.05
 [Hz]."""
 
 RATE_WHY = (
-    "Simulated time waits for the mapper; the thesis's laptop did not, and a scan that GMapping is "
-    "late for is matched from an odometry that has moved on. Here each has the odometry of its "
-    "own time, and at 2 Hz there are three times as many of them to correct the encoders by."
+    "Simulated time waits for the mapper. The thesis's laptop did not: a scan that GMapping was "
+    "late for may have been matched from an odometry that had moved on. Here each scan has the "
+    "odometry of its own time, and at 2 Hz three times as many correct the encoders."
 )
 
 ENCODERS_WHY = (

@@ -1,7 +1,9 @@
 """Records the two drives and maps each with every mapper that a figure needs, in processes."""
 
+import signal
 from collections.abc import Callable, Mapping
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from multiprocessing import get_context
 from typing import Any
@@ -77,32 +79,47 @@ def regenerate(config: ThesisConfig, *, processes: int = 2, on_done: Told | None
         on_done: Called after each drive and each map with its name.
 
     Raises:
-        TestbedError: A drive or mapper cannot be run as told, or ``processes`` is not positive.
+        TestbedError: A drive or mapper cannot be run as told, ``processes`` is not positive, or a
+            process was killed from outside, as when memory runs out.
     """
     if processes < 1:
         raise TestbedError(f"jobs: {processes}; must be 1 or more")
     context = get_context(START_METHOD)
     context.set_forkserver_preload([__name__])
-    drives: dict[str, Drive] = {}
-    maps: dict[str, MapRun] = {}
-    pool = ProcessPoolExecutor(max_workers=processes, mp_context=context)
+    pool = ProcessPoolExecutor(
+        max_workers=processes, mp_context=context, initializer=_end_at_ctrl_c
+    )
     try:
-        asked = ((name, getattr(config, name)) for name in ("hallway", "room"))
-        waiting: dict[Future[Any], str] = {
-            pool.submit(record_drive, episode): name for name, episode in asked
-        }
-        while waiting:
-            for future in wait(waiting, return_when=FIRST_COMPLETED).done:
-                name, done = waiting.pop(future), future.result()
-                if isinstance(done, Drive):
-                    drives[name] = done
-                    for key, spec in SPECS.items():
-                        if spec.drive == name:
-                            waiting[pool.submit(run_map, done, spec)] = key
-                else:
-                    maps[name] = done
-                if on_done is not None:
-                    on_done(name)
+        return _run_all(config, pool, on_done)
+    except BrokenProcessPool as error:
+        raise TestbedError(f"a process died ({error}); memory for {processes} is needed") from error
     finally:
         pool.shutdown(cancel_futures=True)
+
+
+def _end_at_ctrl_c() -> None:
+    """Let Ctrl-C, which reaches every process of a terminal, end this one without a traceback."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
+def _run_all(config: ThesisConfig, pool: ProcessPoolExecutor, on_done: Told | None) -> Runs:
+    """Give the pool the drives, then of each drive that ends the maps."""
+    drives: dict[str, Drive] = {}
+    maps: dict[str, MapRun] = {}
+    asked = ((name, getattr(config, name)) for name in ("hallway", "room"))
+    waiting: dict[Future[Any], str] = {
+        pool.submit(record_drive, episode): name for name, episode in asked
+    }
+    while waiting:
+        for future in wait(waiting, return_when=FIRST_COMPLETED).done:
+            name, done = waiting.pop(future), future.result()
+            if isinstance(done, Drive):
+                drives[name] = done
+                for key, spec in SPECS.items():
+                    if spec.drive == name:
+                        waiting[pool.submit(run_map, done, spec)] = key
+            else:
+                maps[name] = done
+            if on_done is not None:
+                on_done(name)
     return Runs(drives=drives, maps={name: maps[name] for name in SPECS})

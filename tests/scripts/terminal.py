@@ -17,6 +17,9 @@ ROOT = Path(__file__).resolve().parents[2]
 PATIENCE = 60.0
 """What does not show up within this time [s] will not: a loaded machine takes 10 to start."""
 
+HIDDEN = ("DISPLAY", "WAYLAND_DISPLAY", "COLUMNS", "LINES")
+"""Variables that would tell the command of another screen or terminal."""
+
 
 class Terminal:
     """A pseudo-terminal with a command in it; the test holds both ends, so it can see the mode."""
@@ -26,7 +29,7 @@ class Terminal:
         fcntl.ioctl(self._keyboard, termios.TIOCSWINSZ, struct.pack("HHHH", 40, 100, 0, 0))
         self._before = termios.tcgetattr(self._child_end)
         self.shown = ""
-        inherited = {key: value for key, value in os.environ.items() if "DISPLAY" not in key}
+        inherited = {key: value for key, value in os.environ.items() if key not in HIDDEN}
         self._child = subprocess.Popen(
             [sys.executable, "-m", "scripts", *words],
             cwd=ROOT,
