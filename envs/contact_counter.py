@@ -13,8 +13,8 @@ APART_STEPS = STEPS_PER_SECOND // 2
 """How long two that touched must be apart before they can touch anew [steps]: 0.5 s."""
 
 OWN_MOTION = 0.02
-"""A robot that moves towards a leg faster than this [m/s] runs into the person; a slower one stands
-(issue 4: never a contact that the robot's own motion caused). A tenth of its full speed."""
+"""A robot that moves towards a leg faster than this, a tenth of its full speed [m/s], runs into the
+person; a slower one stands."""
 
 
 class ContactCounter:

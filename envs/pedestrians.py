@@ -17,7 +17,7 @@ from envs.wall_line import SAME_POINT
 from mapping.errors import TestbedError
 
 LEG_RADIUS = 0.06
-"""Radius of a leg [m] (issue 4): a shin in trousers, at the lidar's height."""
+"""Radius of a leg [m]: a shin in trousers, at the lidar's height."""
 
 LEG_HEIGHT = 0.80
 """Height of a leg [m]: to the hip, far above any beam [assumption]."""

@@ -20,7 +20,7 @@ CLEARANCE = 0.35
 """How far the middle of a body keeps from things [m]: half a door of 0.7 m."""
 
 SPEEDS = (0.5, 1.2)
-"""Speeds are drawn from this range [m/s] (issue 4)."""
+"""Speeds are drawn from this range [m/s]."""
 
 FARTHEST = 10.0
 """Corners of a loop are at most so long a walk apart [m]."""
