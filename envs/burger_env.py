@@ -13,7 +13,8 @@ from envs.burger_constants import CONTROL_PERIOD, IMU_RATE, ODOMETRY_RATE
 from envs.floor_plan import MAX_COORDINATE, FloorPlan
 from envs.imu import ACCEL_RANGE, GYRO_RANGE, ImuConfig
 from envs.lidar_noise import LidarConfig
-from envs.simulation import SensorBatch, Simulation, preset
+from envs.presets import preset
+from envs.simulation import SensorBatch, Simulation
 from envs.wheel_encoders import ODOMETRY_PRESETS, OdometryConfig, YawSource
 from envs.worlds import load_world
 from mapping.burger import (

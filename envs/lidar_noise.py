@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from mapping.burger import LIDAR_RANGE_MAX, LIDAR_RANGE_MIN
 from mapping.errors import TestbedError
+from mapping.sensor_model import LDS_01, SIGMAS_IN_PRECISION
 
 NoReturn = Literal["inf", "zero"]
 """What stands for "nothing within range": ``+inf`` (REP-117) or the real driver's ``0.0``."""
@@ -19,18 +20,18 @@ class LidarConfig:
     """How far an LDS-01 is from the truth; the default is its datasheet.
 
     The datasheet (ROBOTIS e-manual, LDS-01) gives both figures in two parts, absolute below 0.5 m
-    and relative from there to 3.5 m: precision +-10 mm and +-3.5 %, accuracy +-15 mm and +-5 %.
+    and relative from there to 3.5 m: the precision is ``LDS_01`` of ``mapping.sensor_model``, the
+    accuracy +-15 mm and +-5 %.
     """
 
-    near_range: float = 0.5
+    near_range: float = LDS_01.near_range
     """Distance [m] at which the relative figures take over from the absolute ones."""
-    near_sigma: float = 0.010 / 3.0
-    """Standard deviation of a near beam [m]: the precision is taken as three sigma."""
-    far_sigma: float = 0.035 / 3.0
+    near_sigma: float = LDS_01.near_precision / SIGMAS_IN_PRECISION
+    """Standard deviation of a near beam [m]."""
+    far_sigma: float = LDS_01.far_precision / SIGMAS_IN_PRECISION
     """The same of a far beam, as a share of the distance."""
-    scale_sigma: float = 0.005
-    """Standard deviation of the scale error of a unit, drawn once an episode: tape tests of maps
-    from lidars of this class came out -0.2 to +0.8 %."""
+    scale_sigma: float = LDS_01.scale_sigma
+    """Standard deviation of the scale error of a unit, drawn once an episode."""
     near_bias: float = 0.0
     """Constant error of a unit near by [m]; its sign is drawn once an episode."""
     far_bias: float = 0.0
@@ -87,7 +88,7 @@ LIDAR_PRESETS: dict[str, LidarConfig] = {
         far_sigma=0.0006,
         scale_sigma=0.0,
         wrong=0.003,
-        wrong_sigma=0.010,
+        wrong_sigma=LDS_01.near_precision,
         dropout=0.006,
         open_dropout=0.006,
     ),

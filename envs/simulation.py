@@ -1,8 +1,6 @@
 """Turns velocity commands into the messages of a Burger that drives through a floor plan."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TypeVar
 
 import mujoco
 import numpy as np
@@ -22,6 +20,7 @@ from envs.floor_plan import FloorPlan
 from envs.imu import IMU_PRESETS, ImuConfig, InertialUnit, yaw_of
 from envs.lidar import BLOCK_STEPS, Lidar
 from envs.lidar_noise import LIDAR_PRESETS, LidarConfig
+from envs.presets import preset
 from envs.random_pedestrians import check_people, random_pedestrians
 from envs.scene import build_scene, place, planar_pose, planar_velocity
 from envs.schedule import IMU_STEPS, is_odometry_step, next_event
@@ -43,8 +42,6 @@ SETTLE_STEPS = STEPS_PER_SECOND // 2
 _TIMEOUT_STEPS = round(COMMAND_TIMEOUT * STEPS_PER_SECOND)
 _BLOCK_STATES = BLOCK_STEPS // IMU_STEPS + 1
 """States that the lidar needs to know how the base moved during a block."""
-
-Config = TypeVar("Config")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -285,19 +282,6 @@ class Simulation:
         if self._encoders.config.truth:
             return self._encoders.read_truth(stamp, planar_pose(qpos), planar_velocity(qpos, qvel))
         return self._encoders.read(stamp, _wheel_angles(qpos), imu_yaw)
-
-
-def preset(field: str, choice: str | Config, presets: Mapping[str, Config]) -> Config:
-    """The configuration that a name stands for; a configuration stands for itself.
-
-    Raises:
-        TestbedError: There is no preset of that name.
-    """
-    if not isinstance(choice, str):
-        return choice
-    if choice not in presets:
-        raise TestbedError(f"{field}: {choice!r}; must be one of {', '.join(presets)}")
-    return presets[choice]
 
 
 def _wheel_angles(qpos: NDArray[np.float64]) -> tuple[float, float]:

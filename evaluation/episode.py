@@ -20,7 +20,7 @@ from mapping.coverage import CoverageMeter
 from mapping.errors import TestbedError
 from mapping.gap_filling import GapFilling, check_rule, with_gaps_filled
 from mapping.grid import OccupancyGrid
-from mapping.mappers import make_mapper
+from mapping.mappers import check_resolution, make_mapper
 from mapping.messages import ODOMETRY_COLUMNS
 from mapping.pose_graph import PoseGraph
 from mapping.pose_history import PoseHistory
@@ -83,8 +83,7 @@ class EpisodeConfig:
             raise TestbedError(f"seed: {self.seed}; must be 0 or more")
         if not CONTROL_PERIOD <= self.time_limit < np.inf:
             raise TestbedError(f"time_limit: {self.time_limit} s; must be finite and above 0.1")
-        if self.resolution is not None and not 0.002 <= self.resolution <= 0.5:
-            raise TestbedError(f"resolution: {self.resolution} m; must be 0.002 to 0.5")
+        check_resolution(self.resolution)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from evaluation.animation import Animation
+from evaluation.animation.animation import Animation
 from evaluation.episode import Episode
 from evaluation.goals_file import write_goals
 from evaluation.map_reload import map_reloads

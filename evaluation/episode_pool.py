@@ -54,7 +54,7 @@ def run_episodes(
     """Run every job, a few at a time, in order.
 
     Kernels that are not compiled are compiled by each process that starts before they are: compile
-    them first (``evaluation.warm_up.compile_kernels``).
+    them first (``evaluation.kernels.warm_up.kernels_of_mapper``).
 
     Args:
         jobs: What to run, and where to write it.

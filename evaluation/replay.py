@@ -17,7 +17,7 @@ from mapping.geometry import Pose, compose
 from mapping.grid import OccupancyGrid
 from mapping.log_editing import reach_of, rebased
 from mapping.mapper import Mapper
-from mapping.mappers import CONFIGS, make_mapper
+from mapping.mappers import CONFIGS, check_resolution, make_mapper
 from mapping.odometry_trajectory import odometry_at_scans, odometry_trajectory
 from mapping.pose_graph import PoseGraph
 from mapping.pose_history import PoseHistory
@@ -66,8 +66,7 @@ class ReplayConfig:
         """Refuse figures that make no replay."""
         if self.max_range is not None and not 0.0 < self.max_range < np.inf:
             raise TestbedError(f"max_range: {self.max_range} m; must be finite and above 0")
-        if self.resolution is not None and not 0.002 <= self.resolution <= 0.5:
-            raise TestbedError(f"resolution: {self.resolution} m; must be 0.002 to 0.5")
+        check_resolution(self.resolution)
         if not 0.0 <= self.period < np.inf:
             raise TestbedError(f"period: {self.period} s; must be finite, 0 or more")
         check_rule(self.gap_filling)

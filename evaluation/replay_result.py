@@ -6,8 +6,6 @@ from typing import Any
 import numpy as np
 
 from envs.truth import truth_of_plan
-from evaluation.clearance import min_clearance
-from evaluation.map_extent import map_length_error
 from evaluation.replay import Replay
 from evaluation.result import (
     map_scores,
@@ -16,6 +14,8 @@ from evaluation.result import (
     trajectory_scores,
     update_rates,
 )
+from evaluation.scores.clearance import min_clearance
+from evaluation.scores.map_extent import map_length_error
 from mapping.compare import score_map
 from mapping.ghosts import ghost_area
 from mapping.relations import score_relations

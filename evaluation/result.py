@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from evaluation.clearance import min_clearance
-from evaluation.map_extent import map_length_error
-from evaluation.reference_tour import reference_tour
+from evaluation.reference_tour.tour import reference_tour
+from evaluation.scores.clearance import min_clearance
+from evaluation.scores.map_extent import map_length_error
 from mapping.compare import MapScores, score_map
 from mapping.ghosts import ghost_area
 from mapping.trajectory import Trajectory, path_length

@@ -16,9 +16,9 @@ from mapping.io.g2o import write_g2o
 from mapping.pose_graph import PoseGraph
 
 if TYPE_CHECKING:  # a replay needs no simulator, which an episode imports
-    from evaluation.calibration import CalibrationConfig
+    from evaluation.calibration.experiment import CalibrationConfig
     from evaluation.episode import EpisodeConfig
-    from evaluation.localization_run import LocalizationConfig
+    from evaluation.localization.config import LocalizationConfig
     from evaluation.replay import ReplayConfig
 
 GOALS_FILE, ANIMATION_FILE = "goals.csv", "episode.gif"

@@ -26,6 +26,18 @@ THESIS_SIDE = 50.0
 """Edge of the thesis's grid [m] (4.3.2), kept at other resolutions."""
 
 
+LEAST_RESOLUTION, MOST_RESOLUTION = 0.002, 0.5
+"""Edges of a cell that a run may ask for [m]: below any lidar's noise, and as wide as a door."""
+
+
+def check_resolution(resolution: float | None) -> None:
+    """Refuse an edge of a cell [m] that makes no map; None, a mapper's own, passes."""
+    if resolution is not None and not LEAST_RESOLUTION <= resolution <= MOST_RESOLUTION:
+        raise TestbedError(
+            f"resolution: {resolution} m; must be {LEAST_RESOLUTION} to {MOST_RESOLUTION}"
+        )
+
+
 def make_mapper(
     name: str,
     *,

@@ -2,7 +2,6 @@
 
 from array import array
 from time import perf_counter
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,13 +11,6 @@ from mapping.messages import Imu, LaserScan, Observation, Odometry
 from nav.navigator import Navigator
 
 Action = NDArray[np.float32]
-
-
-class Agent(Protocol):
-    """Anything that can drive the robot: this package's agent, or a trained policy."""
-
-    def act(self, observation: Observation) -> Action:
-        """The action ``(2,)`` as (forward speed [m/s], turn rate [rad/s])."""
 
 
 class MappingAgent:
@@ -36,7 +28,11 @@ class MappingAgent:
         """Wall time of each navigator command [s]."""
 
     def act(self, observation: Observation) -> Action:
-        """Update the map with all messages of the last control period, then command."""
+        """Update the map with all messages of the last control period, then command.
+
+        Returns:
+            The action ``(2,)`` as (forward speed [m/s], turn rate [rad/s]).
+        """
         if self._scan is None or observation["scan_stamp"][0] != self._scan.stamp:
             self._scan = LaserScan.from_observation(observation)
         scan = self._scan

@@ -4,6 +4,7 @@ import contextlib
 import io
 import re
 import sys
+from collections.abc import Callable, Mapping
 from typing import TypeVar
 
 import tyro
@@ -35,6 +36,26 @@ def parse(config_type: type[Config], command: str, arguments: list[str]) -> Conf
         if stop.code in (0, None):
             raise
         raise TestbedError(_one_line(complaint.getvalue())) from None
+
+
+def run_action(
+    verb: str, actions: Mapping[str, Callable[[list[str]], int]], arguments: list[str]
+) -> int:
+    """Run the verb's own verb, the first word; without one, tell which there are.
+
+    Returns:
+        The exit status: the action's, 0 for ``--help``, 2 without a word.
+
+    Raises:
+        TestbedError: The verb has no such action.
+    """
+    if not arguments or arguments[0] in ("-h", "--help"):
+        print(f"usage: burger {verb} {{{','.join(actions)}}} ...   (each takes --help)")
+        return 0 if arguments else 2
+    action, *rest = arguments
+    if action not in actions:
+        raise TestbedError(f"{action!r} is unknown; must be one of {', '.join(actions)}")
+    return actions[action](rest)
 
 
 def _one_line(complaint: str) -> str:

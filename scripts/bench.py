@@ -9,6 +9,7 @@ from tqdm import tqdm
 
 from evaluation.bench import BENCH_WORLDS, Loop, Stage, bench_loop, bench_stages
 from evaluation.episode import EpisodeConfig, check_episode
+from evaluation.kernels.warm_up import kernels_of_mapper
 from evaluation.run_folder import write_json
 from mapping.mappers import MAPPERS
 from scripts.arguments import is_terminal, parse
@@ -34,7 +35,7 @@ def run(arguments: list[str]) -> int:
     options = parse(Bench, "bench", arguments)
     _check(options)
     for mapper in MAPPERS:
-        compile_if_needed(mapper, simulates=True)
+        compile_if_needed(kernels_of_mapper(mapper, simulates=True))
     print(f"{platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}")
     stages = bench_stages()
     print(f"\n{'stage':<50} {'median ms':>10} {'p99 ms':>8}")

@@ -7,10 +7,10 @@ from typing import Annotated
 import tyro
 from tqdm import tqdm
 
-from evaluation.calibration import CalibrationConfig, take_readings
-from evaluation.calibration_folder import write_calibration
+from evaluation.calibration.experiment import CalibrationConfig, take_readings
+from evaluation.calibration.fit import Estimate, SensorModelFit, fit_sensor_model
+from evaluation.calibration.folder import write_calibration
 from evaluation.run_folder import run_folder
-from evaluation.sensor_model_fit import Estimate, SensorModelFit, fit_sensor_model
 from mapping.sensor_model import (
     FREE_READINGS,
     LOG_ODDS_FREE,

@@ -7,8 +7,8 @@ from typing import Annotated
 
 from tyro.conf import Positional
 
-from evaluation.comparison import Comparison, compare_map
 from evaluation.run_folder import run_folder, write_json
+from evaluation.scores.comparison import Comparison, compare_map
 from mapping.compare import MapScores
 from mapping.plot import save_map_picture
 from scripts.arguments import parse

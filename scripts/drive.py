@@ -21,6 +21,7 @@ from evaluation.episode import (
     navigator_of,
 )
 from evaluation.episode_folder import write_run
+from evaluation.kernels.warm_up import kernels_of_mapper
 from evaluation.map_snapshots import MapSnapshots
 from evaluation.pace import Pace
 from evaluation.recorder import Recorder
@@ -67,7 +68,9 @@ def run(arguments: list[str]) -> int:
     out = options.out or Path("runs") / _folder_name(config)
     recorder = Recorder() if options.record else None
     with run_folder(out):
-        compile_if_needed(config.mapper, simulates=True, check=lambda: check_episode(config))
+        compile_if_needed(
+            kernels_of_mapper(config.mapper, simulates=True), check=lambda: check_episode(config)
+        )
         episode, late_share = _drive(options, out, pace, recorder)
         result = write_run(episode, out)
     print(summary(result))

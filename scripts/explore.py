@@ -7,9 +7,10 @@ from typing import Annotated, Any
 import tyro
 
 from envs.worlds import world_label
-from evaluation.animation import Animation
+from evaluation.animation.animation import Animation
 from evaluation.episode import Episode, EpisodeConfig, check_episode, run_episode
 from evaluation.episode_folder import write_run
+from evaluation.kernels.warm_up import kernels_of_mapper
 from evaluation.progress import Progress
 from evaluation.recorder import Recorder
 from evaluation.run_folder import run_folder
@@ -39,7 +40,9 @@ def run(arguments: list[str]) -> int:
     recorder = Recorder() if options.record else None
     animation = Animation() if options.animate else None
     with run_folder(out):
-        compile_if_needed(config.mapper, simulates=True, check=lambda: check_episode(config))
+        compile_if_needed(
+            kernels_of_mapper(config.mapper, simulates=True), check=lambda: check_episode(config)
+        )
         result = write_run(_watch(config, recorder, animation), out, animation)
     print(summary(result))
     more = ", log.carmen, bag" if options.record else ""

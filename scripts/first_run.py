@@ -3,18 +3,15 @@
 import sys
 from collections.abc import Callable
 
-from evaluation.kernel_cache import forget_stale_kernels
-from evaluation.warm_up import compile_kernels, is_warm
+from evaluation.kernels.cache import forget_stale_kernels
+from evaluation.kernels.kernel_set import KernelSet
 
 
-def compile_if_needed(
-    mapper: str, *, simulates: bool, check: Callable[[], None] | None = None
-) -> None:
-    """Compile what runs with a mapper need now if it is not, saying so on stderr.
+def compile_if_needed(kernels: KernelSet, check: Callable[[], None] | None = None) -> None:
+    """Compile the kernels of a run now if they are not, saying so on stderr.
 
     Args:
-        mapper: Its name.
-        simulates: Whether an episode is run, or else a log mapped.
+        kernels: What the run needs.
         check: Raises what the run would, if that is not known yet: nobody waits a minute to be
             told of a typing error.
 
@@ -22,12 +19,13 @@ def compile_if_needed(
         TestbedError: What ``check`` raises, before anything is said or compiled.
     """
     forget_stale_kernels()
-    if not is_warm(mapper, simulates=simulates):
-        if check is not None:
-            check()
-        print(
-            f"compiling the kernels of mapper {mapper}, once: up to a minute ...",
-            file=sys.stderr,
-            flush=True,
-        )
-        compile_kernels(mapper, simulates=simulates)
+    if kernels.is_ready:
+        return
+    if check is not None:
+        check()
+    print(
+        f"compiling the kernels of {kernels.owner}, once: up to a minute ...",
+        file=sys.stderr,
+        flush=True,
+    )
+    kernels.compile()

@@ -1,6 +1,5 @@
 """``burger localize``: finds the robot on a given map."""
 
-import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
@@ -8,18 +7,15 @@ from typing import Annotated, Any
 import tyro
 from tqdm import tqdm
 
-from evaluation.kernel_cache import forget_stale_kernels
-from evaluation.localization_folder import write_localization
-from evaluation.localization_result import is_found
-from evaluation.localization_run import (
-    LocalizationConfig,
-    LocalizationRun,
-    check_localization,
-    run_localization,
-)
-from evaluation.localization_warm_up import compile_localizer, is_warm
+from evaluation.localization.config import LocalizationConfig
+from evaluation.localization.folder import write_localization
+from evaluation.localization.recording import LocalizationRun
+from evaluation.localization.result import is_found
+from evaluation.localization.run import check_localization, run_localization
+from evaluation.localization.warm_up import kernels_of_localizer
 from evaluation.run_folder import run_folder
 from scripts.arguments import is_terminal, parse
+from scripts.first_run import compile_if_needed
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -73,15 +69,7 @@ def _located(seconds: float | None, word: str) -> str:
 
 def _watch(config: LocalizationConfig) -> LocalizationRun:
     """Run the localisation, a bar growing before the user's eyes if there is a terminal."""
-    forget_stale_kernels()
-    if not is_warm(config.filter):
-        check_localization(config)
-        print(
-            f"compiling the kernels of filter {config.filter}, once: up to a minute ...",
-            file=sys.stderr,
-            flush=True,
-        )
-        compile_localizer(config.filter)
+    compile_if_needed(kernels_of_localizer(config.filter), lambda: check_localization(config))
     with tqdm(total=round(config.end), unit="s", disable=not is_terminal(), leave=False) as bar:
         return run_localization(config, lambda time: _advance(bar, int(time)))
 

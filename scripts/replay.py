@@ -7,6 +7,7 @@ from typing import Annotated, Any
 import tyro
 from tqdm import tqdm
 
+from evaluation.kernels.warm_up import kernels_of_mapper
 from evaluation.recording import load_recording
 from evaluation.replay import COMPLETE, Replay, ReplayConfig, check_replay, run_replay
 from evaluation.replay_folder import write_replay
@@ -78,7 +79,10 @@ def _shown(value: float | None) -> str:
 def _watch(config: ReplayConfig) -> Replay:
     """Map the log, a bar growing before the user's eyes if there is a terminal."""
     recording = load_recording(config.log, config.relations)
-    compile_if_needed(config.mapper, simulates=False, check=lambda: check_replay(config, recording))
+    compile_if_needed(
+        kernels_of_mapper(config.mapper, simulates=False),
+        check=lambda: check_replay(config, recording),
+    )
     with tqdm(
         total=len(recording.log.scans), unit="scan", disable=not is_terminal(), leave=False
     ) as bar:

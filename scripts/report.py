@@ -6,8 +6,8 @@ from typing import Annotated
 
 from tyro.conf import Positional
 
-from evaluation.report import write_report
-from evaluation.run_record import find_runs
+from evaluation.sweeps.report import write_report
+from evaluation.sweeps.run_record import find_runs
 from mapping.errors import TestbedError
 from scripts.arguments import parse
 

@@ -1,6 +1,5 @@
 """``burger scenario``: lists scenarios, runs them and judges them."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from datetime import datetime
 from pathlib import Path
@@ -9,13 +8,14 @@ from typing import Annotated, Any
 from tqdm import tqdm
 from tyro.conf import Positional
 
-from evaluation.junit import write_junit
+from evaluation.kernels.warm_up import kernels_of_mapper
 from evaluation.run_folder import run_folder
-from evaluation.scenario_file import check_scenario
-from evaluation.scenario_run import ScenarioRun, ScenarioRuns, run_scenarios
-from evaluation.scenarios import ScenarioSet, built_in_scenarios, gather
+from evaluation.scenarios.catalogue import ScenarioSet, built_in_scenarios, gather
+from evaluation.scenarios.file import check_scenario
+from evaluation.scenarios.junit import write_junit
+from evaluation.scenarios.run import ScenarioRun, ScenarioRuns, run_scenarios
 from mapping.errors import TestbedError
-from scripts.arguments import is_terminal, parse
+from scripts.arguments import is_terminal, parse, run_action
 from scripts.first_run import compile_if_needed
 
 INTERRUPTED = 130
@@ -44,14 +44,7 @@ class Run:
 
 def run(arguments: list[str]) -> int:
     """Run the verb's own verb: list or run."""
-    actions: dict[str, Callable[[list[str]], int]] = {"list": _list, "run": _run}
-    if not arguments or arguments[0] in ("-h", "--help"):
-        print(f"usage: burger scenario {{{','.join(actions)}}} ...   (each takes --help)")
-        return 0 if arguments else 2
-    action, *rest = arguments
-    if action not in actions:
-        raise TestbedError(f"{action!r} is unknown; must be one of {', '.join(actions)}")
-    return actions[action](rest)
+    return run_action("scenario", {"list": _list, "run": _run}, arguments)
 
 
 def _list(arguments: list[str]) -> int:
@@ -74,7 +67,7 @@ def _run(arguments: list[str]) -> int:
     with run_folder(options.out):
         junit.unlink(missing_ok=True)  # an earlier one would vouch for this run
         for mapper in sorted({each.episode.mapper for each in every.values()}):
-            compile_if_needed(mapper, simulates=True)
+            compile_if_needed(kernels_of_mapper(mapper, simulates=True))
         started = datetime.now()
         runs = _watch(scenarios, options)
         write_junit(junit, runs.runs, started=started)

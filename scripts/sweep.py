@@ -7,10 +7,11 @@ from typing import Annotated, Never
 import tyro
 from tqdm import tqdm
 
+from evaluation.kernels.warm_up import kernels_of_mapper
 from evaluation.run_folder import run_folder
-from evaluation.run_record import RunRecord
-from evaluation.run_table import KEYS, table_of
-from evaluation.sweep import TABLE, Sweep, SweepConfig, finished_runs, plan_sweep, run_sweep
+from evaluation.sweeps.run_record import RunRecord
+from evaluation.sweeps.run_table import KEYS, table_of
+from evaluation.sweeps.sweep import TABLE, Sweep, SweepConfig, finished_runs, plan_sweep, run_sweep
 from mapping.errors import TestbedError
 from scripts.arguments import is_terminal, parse
 from scripts.first_run import compile_if_needed
@@ -42,7 +43,7 @@ def run(arguments: list[str]) -> int:
             print(f"{len(finished)} of {len(planned)} runs are there already and are kept")
         if len(finished) < len(planned):
             for mapper in dict.fromkeys(options.sweep.mappers):
-                compile_if_needed(mapper, simulates=True)
+                compile_if_needed(kernels_of_mapper(mapper, simulates=True))
         with tqdm(
             total=len(planned), initial=len(finished), unit="run", disable=not is_terminal()
         ) as bar:

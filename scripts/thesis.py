@@ -5,6 +5,7 @@ from pathlib import Path
 
 from tqdm import tqdm
 
+from evaluation.kernels.warm_up import kernels_of_mapper
 from evaluation.run_folder import run_folder
 from evaluation.thesis.config import DRIVING_MAPPER, ThesisConfig
 from evaluation.thesis.regenerate import SPECS, STEPS, regenerate
@@ -33,9 +34,9 @@ def run(arguments: list[str]) -> int:
     if options.jobs < 1:
         raise TestbedError(f"--jobs: {options.jobs}; must be 1 or more")
     with run_folder(options.out):
-        compile_if_needed(DRIVING_MAPPER, simulates=True)
+        compile_if_needed(kernels_of_mapper(DRIVING_MAPPER, simulates=True))
         for mapper in dict.fromkeys(spec.mapper for spec in SPECS.values()):
-            compile_if_needed(mapper, simulates=False)
+            compile_if_needed(kernels_of_mapper(mapper, simulates=False))
         with tqdm(total=STEPS + 1, unit="step", disable=not is_terminal(), leave=False) as bar:
 
             def tell(name: str) -> None:

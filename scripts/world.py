@@ -1,6 +1,5 @@
 """``burger world``: lists, draws and converts floor plans."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -14,9 +13,8 @@ from envs.plan_picture import draw_plan
 from envs.plan_yaml import write_plan
 from envs.random_world import MAX_AREA, MAX_ROOMS, MIN_AREA, MIN_ROOMS, STYLES
 from envs.worlds import built_in_worlds, load_world
-from mapping.errors import TestbedError
 from mapping.io.atomic import write_atomically
-from scripts.arguments import parse
+from scripts.arguments import parse, run_action
 
 RANDOM_ABOUT = (
     f"a building drawn from the seed, {MIN_AREA:g} to {MAX_AREA:g} m2, {MIN_ROOMS} to {MAX_ROOMS} "
@@ -51,41 +49,32 @@ class List:
 
 def run(arguments: list[str]) -> int:
     """Run the verb's own verb: list, show or convert."""
-    actions: dict[str, Callable[[list[str]], None]] = {
-        "list": _list,
-        "show": _show,
-        "convert": _convert,
-    }
-    if not arguments or arguments[0] in ("-h", "--help"):
-        print(f"usage: burger world {{{','.join(actions)}}} ...   (each takes --help)")
-        return 0 if arguments else 2
-    action, *rest = arguments
-    if action not in actions:
-        raise TestbedError(f"{action!r} is unknown; must be one of {', '.join(actions)}")
-    actions[action](rest)
-    return 0
+    return run_action("world", {"list": _list, "show": _show, "convert": _convert}, arguments)
 
 
-def _list(arguments: list[str]) -> None:
+def _list(arguments: list[str]) -> int:
     parse(List, "world list", arguments)
     for name, about in built_in_worlds().items():
         print(f"{name:<20} {about}")
     print(f"{'random:SEED':<20} {RANDOM_ABOUT}")
+    return 0
 
 
-def _show(arguments: list[str]) -> None:
+def _show(arguments: list[str]) -> int:
     options = parse(Show, "world show", arguments)
     plan = load_world(options.world)
     out = options.out or Path(f"{plan.name}.png")
     _save_picture(plan, out)
     print(f"{plan.name}: {len(plan.solids())} solids, start {plan.start}; drawn in {out}")
+    return 0
 
 
-def _convert(arguments: list[str]) -> None:
+def _convert(arguments: list[str]) -> int:
     options = parse(Convert, "world convert", arguments)
     plan = load_world(options.world)
     write_plan(plan, options.out)
     print(f"{plan.name}: {len(plan.solids())} solids, written to {options.out}")
+    return 0
 
 
 def _save_picture(plan: FloorPlan, out: Path) -> None:

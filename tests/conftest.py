@@ -4,7 +4,7 @@ import os
 
 from hypothesis import settings
 
-from evaluation.kernel_cache import forget_stale_kernels
+from evaluation.kernels.cache import forget_stale_kernels
 
 os.environ.setdefault("MPLBACKEND", "Agg")
 

@@ -5,12 +5,12 @@ import numpy as np
 from evaluation.result import update_rates
 from evaluation.thesis.drift import bend_deg, end_error_m, false_wall_share
 from evaluation.thesis.figure import ThesisFigure
-from evaluation.thesis.figures_mapping import view
 from evaluation.thesis.holes import fill, hole_share, pieces_per_metre
 from evaluation.thesis.map_run import MapRun
 from evaluation.thesis.picture import picture_kb
 from evaluation.thesis.regenerate import Runs
 from evaluation.thesis.verdict import Check, shown
+from evaluation.thesis.views import view
 
 BENT = 1.0
 """A map is bent when its end is turned by this much [deg]: over the last 5 m that is 9 cm, as much

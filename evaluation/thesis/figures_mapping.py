@@ -2,10 +2,9 @@
 
 import numpy as np
 
-from evaluation.thesis.figure import MapView, ThesisFigure
+from evaluation.thesis.figure import ThesisFigure
 from evaluation.thesis.holes import (
     Filling,
-    Mask,
     can_joins_wall,
     can_share,
     fill,
@@ -15,10 +14,8 @@ from evaluation.thesis.holes import (
 from evaluation.thesis.map_run import MapRun
 from evaluation.thesis.regenerate import Runs
 from evaluation.thesis.verdict import Check, shown
+from evaluation.thesis.views import DRAWN, drawn, view
 from mapping.grid import FREE, OCCUPIED, UNKNOWN
-
-HALLWAY_SCALE, ROOM_SCALE = 30.0, 62.0
-"""Pixels per metre: 25 m then fit on a screen, and two pictures side by side in half a page."""
 
 MOST_HOLES = 0.5
 """A map that does not show half of the wall seen from near is no map of the place."""
@@ -47,31 +44,6 @@ def figures_of_mapping(runs: Runs) -> tuple[ThesisFigure, ...]:
         _hallway_filled(runs, fillings["hallway"]),
         _room(runs),
         _room_filled(runs, fillings["room"]),
-    )
-
-
-def view(
-    runs: Runs,
-    name: str,
-    title: str,
-    *,
-    scale: float | None = None,
-    obstacles_only: bool = True,
-    filled: Mask | None = None,
-    window: tuple[float, float, float, float] | None = None,
-) -> MapView:
-    """A picture of a run's map with the path that its mapper believes."""
-    drive, run = runs.of(name)
-    usual = ROOM_SCALE if run.spec.drive == "room" else HALLWAY_SCALE
-    return MapView(
-        title=title,
-        run=run,
-        start=drive.plan.start,
-        scale=usual if scale is None else scale,
-        path=run.trajectory.poses[:, :2],
-        obstacles_only=obstacles_only,
-        filled=filled,
-        window=window,
     )
 
 
@@ -273,7 +245,7 @@ def _filling_table(
 def _counts(run: MapRun) -> tuple[tuple[str, ...], ...]:
     states = run.map.states
     return (
-        ("scans drawn / dropped", f"{run.result['map_updates']} / {run.result['scans_dropped']}"),
+        (DRAWN, drawn(run)),
         *(
             (f"{name} cells", str(int(np.count_nonzero(states == state))))
             for name, state in (("occupied", OCCUPIED), ("free", FREE))

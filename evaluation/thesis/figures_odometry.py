@@ -11,10 +11,10 @@ from evaluation.thesis.drift import (
 )
 from evaluation.thesis.drive import Drive
 from evaluation.thesis.figure import MapView, ThesisFigure
-from evaluation.thesis.figures_mapping import view
 from evaluation.thesis.regenerate import OWN_MAPPERS, Runs
 from evaluation.thesis.turning import heading_error_deg, wrong_area_m2
 from evaluation.thesis.verdict import Check, shown
+from evaluation.thesis.views import DRAWN, drawn, view
 from mapping.trajectory import poses_at
 
 BACK_SCALE = 23.0
@@ -74,7 +74,7 @@ def _ungated(runs: Runs) -> ThesisFigure:
                 why_not="The turn was too slow, or too short, for scans to smear.",
             ),
         ),
-        table=(("scans drawn / dropped", _drawn(run.result)),),
+        table=((DRAWN, drawn(run)),),
     )
 
 
@@ -119,7 +119,7 @@ def _gated(runs: Runs) -> ThesisFigure:
         table=(
             ("", "no gate", "gate"),
             ("wrong area [m2]", f"{before:.3f}", f"{after:.3f}"),
-            ("scans drawn / dropped", _drawn(ungated.result), _drawn(run.result)),
+            (DRAWN, drawn(ungated), drawn(run)),
         ),
     )
 
@@ -186,7 +186,3 @@ def _detail(runs: Runs, name: str, drive: Drive, title: str) -> MapView:
     x, y, _ = poses_at(run.trajectory, np.array([drive.farthest]))[0]
     box = (x - DETAIL_SIDE, x + DETAIL_SIDE, y - DETAIL_SIDE, y + DETAIL_SIDE)
     return view(runs, name, title, scale=DETAIL_SCALE, window=box, obstacles_only=False)
-
-
-def _drawn(result: dict[str, object]) -> str:
-    return f"{result['map_updates']} / {result['scans_dropped']}"

@@ -133,26 +133,11 @@ PARTS = (
     _part(
         "appendix A",
         "1000 scans at a wall, 1000 into the open",
-        "evaluation/calibration.py",
+        "evaluation/calibration/experiment.py",
         "calibrate",
     ),
 )
 """Every part, in the order of the thesis."""
-
-
-def parts_as_markdown(parts: Sequence[ThesisPart] = PARTS) -> str:
-    """The table as docs/thesis.md has it."""
-    rows = [
-        (
-            each.part,
-            each.what,
-            f"`{each.module}`",
-            f"`{each.shown_command}`" if each.command else "",
-        )
-        for each in parts
-    ]
-    lines = [HEADINGS, ("---",) * len(HEADINGS), *rows]
-    return "".join(f"| {' | '.join(row)} |\n".replace("|  |", "| |") for row in lines)
 
 
 def parts_as_html(parts: Sequence[ThesisPart] = PARTS) -> str:

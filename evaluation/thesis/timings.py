@@ -37,10 +37,3 @@ def timings_as_html(runs: Runs) -> str:
     head = "<th></th><th>median [ms]</th><th>99th percentile [ms]</th><th>rate kept up [Hz]</th>"
     table = f"<table><thead><tr>{head}</tr></thead><tbody>{''.join(rows)}</tbody></table>"
     return f"{BEGIN}\n{table}\n{END}"
-
-
-def without_timings(page: str) -> str:
-    """A page without the part that differs between two runs of the same seed."""
-    before, _, rest = page.partition(BEGIN)
-    _, _, after = rest.partition(END)
-    return before + after

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mapping.filters.extended_kalman import Difference, Model
-from mapping.filters.gaussian import Information, symmetric, symmetric_inverse
+from mapping.filters.gaussian import Information, symmetric, symmetric_inverse, to_gaussian
 
 
 def predict(belief: Information, motion: Model, noise: ArrayLike) -> Information:
@@ -17,9 +17,9 @@ def predict(belief: Information, motion: Model, noise: ArrayLike) -> Information
     Raises:
         TestbedError: Nothing is known of some direction, so that there is no mean to move.
     """
-    covariance = symmetric_inverse("information matrix", belief.matrix)
-    mean, jacobian = motion(covariance @ belief.vector)
-    spread = jacobian @ covariance @ jacobian.T + np.asarray(noise)
+    before = to_gaussian(belief)
+    mean, jacobian = motion(before.mean)
+    spread = jacobian @ before.covariance @ jacobian.T + np.asarray(noise)
     matrix = symmetric_inverse("prior covariance", spread)
     return Information(vector=matrix @ mean, matrix=matrix)
 
@@ -37,7 +37,7 @@ def correct(
     Raises:
         TestbedError: There is no mean to linearise at, or the measurement has no error.
     """
-    mean = symmetric_inverse("information matrix", prior.matrix) @ prior.vector
+    mean = to_gaussian(prior).mean
     expected, jacobian = sensor(mean)
     innovation = difference(np.asarray(measurement, dtype=np.float64), expected)
     noise = np.asarray(noise, dtype=np.float64)

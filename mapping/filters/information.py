@@ -7,7 +7,7 @@ Kalman filter: correcting is an addition, predicting takes two inversions.
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mapping.filters.gaussian import Information, symmetric, symmetric_inverse
+from mapping.filters.gaussian import Information, symmetric, symmetric_inverse, to_gaussian
 
 
 def predict(
@@ -24,9 +24,10 @@ def predict(
     """
     a, b, control = (np.asarray(value, dtype=np.float64) for value in (a, b, control))
     pushed = b @ control if b.ndim == 2 else b * control
-    covariance = symmetric_inverse("information matrix", belief.matrix)
-    matrix = symmetric_inverse("prior covariance", a @ covariance @ a.T + np.asarray(noise))
-    return Information(vector=matrix @ (a @ covariance @ belief.vector + pushed), matrix=matrix)
+    before = to_gaussian(belief)
+    spread = a @ before.covariance @ a.T + np.asarray(noise)
+    matrix = symmetric_inverse("prior covariance", spread)
+    return Information(vector=matrix @ (a @ before.mean + pushed), matrix=matrix)
 
 
 def correct(

@@ -26,7 +26,10 @@ def normalised(log_weights: ArrayLike) -> Array:
 
 
 def effective_number(weights: ArrayLike) -> float:
-    """How many particles carry the weight: 1 (one has it all) to n (Liu 1996)."""
+    """How many particles carry the weight: 1 (one has it all) to n (Liu 1996).
+
+    Neff of Grisetti et al. 2007, eq. 20.
+    """
     weights = np.asarray(weights, dtype=np.float64)
     return float(np.sum(weights) ** 2 / np.sum(weights**2))
 

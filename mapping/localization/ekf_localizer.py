@@ -6,7 +6,6 @@ it most likely is. One Gaussian cannot say "here or there": it needs a start and
 """
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, field, fields
 
 import numpy as np
@@ -16,12 +15,13 @@ from mapping.errors import TestbedError
 from mapping.filters import extended_kalman
 from mapping.filters.gaussian import Gaussian
 from mapping.geometry import Pose, compose, wrap_to_pi
+from mapping.localization.hypothesis_localizer import HypothesisLocalizer
 from mapping.localization.known_map import KnownMap
 from mapping.localization.localizer import Hypothesis
 from mapping.localization.map_corners import map_corners
 from mapping.localization.scan_corners import CornerConfig, Corners, find_corners
-from mapping.localization.scan_reader import ReaderConfig, Reading, ScanReader
-from mapping.messages import Imu, LaserScan, Odometry
+from mapping.localization.scan_reader import ReaderConfig, Reading
+from mapping.pose_covariance import turned
 
 Array = NDArray[np.float64]
 
@@ -53,7 +53,7 @@ class EkfLocalizerConfig:
                 raise TestbedError(f"ekf {each.name}: {value}; must be finite and above 0")
 
 
-class EkfLocalizer:
+class EkfLocalizer(HypothesisLocalizer):
     """The Gaussian belief of the pose, and the landmarks of the map."""
 
     def __init__(
@@ -81,33 +81,12 @@ class EkfLocalizer:
                 "stand for all poses"
             )
         self.config = config or EkfLocalizerConfig()
-        self.updates = 0
+        super().__init__(self.config.reader)
         self.landmarks: Corners = map_corners(known, self.config.corners)
-        self._reader = ScanReader(self.config.reader)
         self._belief = Gaussian(
             mean=np.array(start, dtype=np.float64), covariance=np.diag(np.square(start_sigmas))
         )
-
-    @property
-    def pose_map(self) -> Pose:
-        """The pose now ``(3,)``."""
-        return compose(self._belief.mean, self._reader.motion_since())
-
-    @property
-    def covariance(self) -> Array:
-        """Its covariance ``(3, 3)``."""
-        return self._belief.covariance
-
-    @property
-    def hypotheses(self) -> Sequence[Hypothesis]:
-        """The one place that a Gaussian knows."""
-        belief = self._belief
-        return (Hypothesis(pose=belief.mean, covariance=belief.covariance, weight=1.0),)
-
-    @property
-    def is_ambiguous(self) -> bool:
-        """Never: one Gaussian cannot tell two places."""
-        return False
+        self._hypotheses = self._one_place()
 
     @property
     def is_lost(self) -> bool:
@@ -125,31 +104,29 @@ class EkfLocalizer:
         """The mean ``(1, 3)``."""
         return self._belief.mean[None, :]
 
-    def update(
-        self, scan: LaserScan | None, odometry: Sequence[Odometry], imu: Sequence[Imu] = ()
-    ) -> None:
-        """Take the messages of one control period."""
-        self._reader.add(odometry, imu)
-        reading = self._reader.read(scan)
-        if reading is None:
-            return
+    def _believe(self, reading: Reading) -> None:
         if not reading.is_first:
             self._predict(reading)
         corners = find_corners(reading.cloud.points, self.config.corners)
         for i in range(len(corners)):
             self._correct(corners, i)
         self._belief.mean[2] = wrap_to_pi(self._belief.mean[2])
+        self._hypotheses = self._one_place()
         self.updates += 1
+
+    def _likeliest_pose(self) -> Pose:
+        return self._belief.mean
+
+    def _one_place(self) -> list[Hypothesis]:
+        """The one place that a Gaussian knows."""
+        belief = self._belief
+        return [Hypothesis(pose=belief.mean, covariance=belief.covariance, weight=1.0)]
 
     def _predict(self, reading: Reading) -> None:
         """Lines 2 to 5: move by what odometry and gyroscope say."""
-        yaw = float(self._belief.mean[2])
-        cos, sin = math.cos(yaw), math.sin(yaw)
-        turn = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
         spread = self.config.motion_factor**2 * reading.spread
-        self._belief = extended_kalman.predict(
-            self._belief, _motion(reading.motion), turn @ spread @ turn.T
-        )
+        noise = turned(spread, float(self._belief.mean[2]))
+        self._belief = extended_kalman.predict(self._belief, _motion(reading.motion), noise)
 
     def _correct(self, corners: Corners, index: int) -> None:
         """Lines 9 to 20: find the likeliest landmark of a corner and measure it."""

@@ -6,7 +6,6 @@ explained worse than they used to be (selective updating, 8.2.3).
 """
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -15,16 +14,15 @@ from numpy.typing import ArrayLike, NDArray
 from mapping.errors import TestbedError
 from mapping.filters import bayes
 from mapping.geometry import Pose, compose, wrap_to_pi
-from mapping.localization import localizer
 from mapping.localization.hypothesis_clusters import cluster
+from mapping.localization.hypothesis_localizer import HypothesisLocalizer
 from mapping.localization.hypothesis_tracker import HypothesisTracker
 from mapping.localization.known_map import KnownMap
 from mapping.localization.likelihood_field import LikelihoodField, LikelihoodFieldConfig
 from mapping.localization.localizer import Hypothesis
 from mapping.localization.pose_lattice_kernels import shift_belief
 from mapping.localization.pose_refiner import PoseRefiner
-from mapping.localization.scan_reader import ReaderConfig, ScanReader
-from mapping.messages import Imu, LaserScan, Odometry
+from mapping.localization.scan_reader import ReaderConfig, Reading
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -62,7 +60,7 @@ class HistogramLocalizerConfig:
             raise TestbedError(f"histogram layers: {self.layers}; must be at least 4")
 
 
-class HistogramLocalizer:
+class HistogramLocalizer(HypothesisLocalizer):
     """Grid localisation on a known map; starts anywhere, or at a given pose."""
 
     def __init__(
@@ -82,10 +80,10 @@ class HistogramLocalizer:
             start_sigmas: How sure it is [m, m, rad].
         """
         self.config = config or HistogramLocalizerConfig()
-        self.updates = 0
-        self._reader = ScanReader(self.config.reader)
+        reader = self.config.reader
+        refiner = PoseRefiner(known, reach=reader.max_range)
+        super().__init__(reader, HypothesisTracker(refiner))
         self._field = LikelihoodField(known, self.config.sensor)
-        self._tracker = HypothesisTracker(PoseRefiner(known, reach=self.config.reader.max_range))
         self._possible = _possible(known, self.config)
         self._poses = _middles(known, self.config)
         self._belief = self._possible / self._possible.sum()
@@ -95,37 +93,6 @@ class HistogramLocalizer:
         self._usual = self._field.best
         self._pending = np.zeros(3)
         self._looked_at = int(self._possible.sum())
-        self._hypotheses: list[Hypothesis] = []
-
-    @property
-    def pose_map(self) -> Pose:
-        """The best guess now ``(3,)``."""
-        return compose(self._pose_then(), self._reader.motion_since())
-
-    @property
-    def covariance(self) -> NDArray[np.float64]:
-        """Its covariance ``(3, 3)`` if the likeliest hypothesis is the right one."""
-        if self._tracker.pose is not None:
-            return self._tracker.covariance
-        if self._hypotheses:
-            return self._hypotheses[0].covariance
-        poses = self.sample
-        return np.asarray(np.cov(poses.T))
-
-    @property
-    def hypotheses(self) -> Sequence[Hypothesis]:
-        """The places where the robot may be, likeliest first."""
-        return tuple(self._hypotheses)
-
-    @property
-    def is_ambiguous(self) -> bool:
-        """Whether other places than the likeliest are still believed possible."""
-        return localizer.is_ambiguous(self._hypotheses)
-
-    @property
-    def is_lost(self) -> bool:
-        """Whether no place is likelier than all others together."""
-        return localizer.is_lost(self._hypotheses)
 
     @property
     def size(self) -> int:
@@ -137,14 +104,7 @@ class HistogramLocalizer:
         """Middles of the cells that are looked at ``(n, 3)``."""
         return np.asarray(self._poses[self._belief > self.config.least])
 
-    def update(
-        self, scan: LaserScan | None, odometry: Sequence[Odometry], imu: Sequence[Imu] = ()
-    ) -> None:
-        """Take the messages of one control period."""
-        self._reader.add(odometry, imu)
-        reading = self._reader.read(scan)
-        if reading is None:
-            return
+    def _believe(self, reading: Reading) -> None:
         if not reading.is_first:
             self._pending = compose(self._pending, reading.motion)
         x, y, turn = self._pending
@@ -157,7 +117,6 @@ class HistogramLocalizer:
             self.updates += 1
         else:
             self._hypotheses = [_moved(each, reading.motion) for each in self._hypotheses]
-        self._tracker.follow(reading, self._hypotheses[0] if self._hypotheses else None)
 
     def _predict(self) -> None:
         """Move the belief by the motion since it was moved last (table 8.1, line 3)."""
@@ -201,12 +160,7 @@ class HistogramLocalizer:
         active = self._belief > self.config.least
         self._hypotheses = cluster(self._poses[active], self._belief[active])
 
-    def _pose_then(self) -> Pose:
-        """The best guess at the newest reading."""
-        if self._tracker.pose is not None:
-            return self._tracker.pose
-        if self._hypotheses:
-            return self._hypotheses[0].pose
+    def _likeliest_pose(self) -> Pose:
         return np.asarray(self._poses[np.unravel_index(self._belief.argmax(), self._belief.shape)])
 
 

@@ -13,6 +13,7 @@ from mapping.geometry import Pose, between, compose
 from mapping.localization.localizer import LOST_BELOW, Hypothesis
 from mapping.localization.pose_refiner import PoseRefiner
 from mapping.localization.scan_reader import Reading
+from mapping.pose_covariance import carried
 
 NEAR, NEAR_YAW = 0.3, math.radians(15.0)
 """Farther than this from the hypothesis [m, rad] the tracked pose is of another one."""
@@ -42,14 +43,3 @@ class HypothesisTracker:
                 pose = moved
         match = self._refiner.refine(reading.cloud, pose, covariance)
         self.pose, self.covariance, self.score = match.pose, match.covariance, match.score
-
-
-def carried(
-    covariance: NDArray[np.float64], pose: Pose, moved: Pose, spread: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """The covariance after a motion whose own is ``spread``, in the map frame ``(3, 3)``."""
-    dx, dy = moved[:2] - pose[:2]
-    cos, sin = math.cos(pose[2]), math.sin(pose[2])
-    carry = np.array([[1.0, 0.0, -dy], [0.0, 1.0, dx], [0.0, 0.0, 1.0]])
-    turn = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
-    return np.asarray(carry @ covariance @ carry.T + turn @ spread @ turn.T)

@@ -9,7 +9,6 @@ that was not carried off.
 """
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -17,16 +16,15 @@ from numpy.typing import ArrayLike, NDArray
 
 from mapping.errors import TestbedError
 from mapping.geometry import Pose, compose
-from mapping.localization import localizer
 from mapping.localization.hypothesis_clusters import cluster
+from mapping.localization.hypothesis_localizer import HypothesisLocalizer
 from mapping.localization.hypothesis_tracker import HypothesisTracker
 from mapping.localization.known_map import KnownMap
 from mapping.localization.likelihood_field import LikelihoodField, LikelihoodFieldConfig
 from mapping.localization.localizer import Hypothesis
 from mapping.localization.particle_belief import BeliefConfig, ParticleBelief
 from mapping.localization.pose_refiner import PoseRefiner
-from mapping.localization.scan_reader import ReaderConfig, ScanReader
-from mapping.messages import Imu, LaserScan, Odometry
+from mapping.localization.scan_reader import ReaderConfig, Reading
 
 MOST_LOG_ODDS = 50.0
 """Beyond these odds a set is as good as impossible; keeps an exponential from overflowing."""
@@ -62,7 +60,7 @@ class ParticleLocalizerConfig:
                 raise TestbedError(f"{name}: {getattr(self, name)}; must be between 0 and 1")
 
 
-class ParticleLocalizer:
+class ParticleLocalizer(HypothesisLocalizer):
     """Monte Carlo localisation on a known map; starts anywhere, or at a given pose."""
 
     def __init__(
@@ -84,12 +82,12 @@ class ParticleLocalizer:
             seed: Of every random number.
         """
         self.config = config or ParticleLocalizerConfig()
-        self.updates = 0
+        reader = self.config.reader
+        refiner = PoseRefiner(known, reach=reader.max_range)
+        super().__init__(reader, HypothesisTracker(refiner))
         self._known = known
         self._rng = np.random.default_rng(seed)
-        self._reader = ScanReader(self.config.reader)
         self._field = LikelihoodField(known, self.config.sensor)
-        self._tracker = HypothesisTracker(PoseRefiner(known, reach=self.config.reader.max_range))
         if start is None:
             self._belief = self._anywhere()
         else:
@@ -100,36 +98,6 @@ class ParticleLocalizer:
         self._rival_log_odds = -math.inf
         self._age = 0
         self._moved = np.zeros(3)
-        self._hypotheses: list[Hypothesis] = []
-
-    @property
-    def pose_map(self) -> Pose:
-        """The best guess now ``(3,)``."""
-        return compose(self._pose_then(), self._reader.motion_since())
-
-    @property
-    def covariance(self) -> NDArray[np.float64]:
-        """Its covariance ``(3, 3)`` if the likeliest hypothesis is the right one."""
-        if self._tracker.pose is not None:
-            return self._tracker.covariance
-        if self._hypotheses:
-            return self._hypotheses[0].covariance
-        return np.asarray(np.cov(self._belief.poses.T))
-
-    @property
-    def hypotheses(self) -> Sequence[Hypothesis]:
-        """The places where the robot may be, likeliest first."""
-        return tuple(self._hypotheses)
-
-    @property
-    def is_ambiguous(self) -> bool:
-        """Whether other places than the likeliest are still believed possible."""
-        return localizer.is_ambiguous(self._hypotheses)
-
-    @property
-    def is_lost(self) -> bool:
-        """Whether no place is likelier than all others together."""
-        return localizer.is_lost(self._hypotheses)
 
     @property
     def size(self) -> int:
@@ -142,14 +110,7 @@ class ParticleLocalizer:
         """The particles ``(n, 3)``."""
         return self._belief.poses
 
-    def update(
-        self, scan: LaserScan | None, odometry: Sequence[Odometry], imu: Sequence[Imu] = ()
-    ) -> None:
-        """Take the messages of one control period."""
-        self._reader.add(odometry, imu)
-        reading = self._reader.read(scan)
-        if reading is None:
-            return
+    def _believe(self, reading: Reading) -> None:
         if not reading.is_first:
             self._predict(reading.motion)
         if reading.is_first or self._has_moved():
@@ -157,7 +118,6 @@ class ParticleLocalizer:
             self._correct(self._field.thinned(reading.cloud.points))
             self.updates += 1
         self._hypotheses = self._believed()
-        self._tracker.follow(reading, self._hypotheses[0] if self._hypotheses else None)
 
     def _predict(self, motion: Pose) -> None:
         self._moved = compose(self._moved, motion)
@@ -205,11 +165,6 @@ class ParticleLocalizer:
     def _new(self, poses: Pose) -> ParticleBelief:
         return ParticleBelief(poses, self._field, self.config.belief, self._rng)
 
-    def _pose_then(self) -> Pose:
-        """The best guess at the newest reading."""
-        if self._tracker.pose is not None:
-            return self._tracker.pose
-        if self._hypotheses:
-            return self._hypotheses[0].pose
+    def _likeliest_pose(self) -> Pose:
         heaviest = int(np.argmax(self._belief.particles.weights))
         return np.asarray(self._belief.poses[heaviest])

@@ -10,6 +10,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from mapping.pose_covariance import turned
 from mapping.slam.fusion_config import FusionConfig
 from mapping.slam.fusion_kernels import BIAS, STATES, TURN_SCALE, WAY_SCALE, YAW, correct, move
 
@@ -53,9 +54,7 @@ class FusionFilter:
 
     def motion_covariance(self) -> NDArray[np.float64]:
         """Covariance ``(3, 3)`` of the motion since the mark, in the marked frame."""
-        cos, sin = math.cos(self._marked_yaw), math.sin(self._marked_yaw)
-        turn = np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]])
-        return np.asarray(turn @ self.covariance[: YAW + 1, : YAW + 1] @ turn.T)
+        return turned(self.covariance[: YAW + 1, : YAW + 1], -self._marked_yaw)
 
     def stand(self, motion: Motion, duration: float, gyro: Gyro) -> None:
         """Take it that the robot does not turn: what the gyroscope reads is its bias."""

@@ -3,17 +3,13 @@
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from mapping.filters.resampling import effective_number, low_variance_sample, normalised
 from mapping.geometry import Pose, transform_points
 from mapping.slam.gmapping_config import GmappingConfig
 from mapping.slam.gmapping_kernels import gather_full, match_particles, sample_fits
 from mapping.slam.gmapping_motion import sample_motion
 from mapping.slam.gmapping_scan import BaseBeams
 from mapping.slam.particle_paths import ParticlePaths
-from mapping.slam.particle_resampling import (
-    effective_number,
-    low_variance_sample,
-    normalised_weights,
-)
 from mapping.slam.tile_map import TileMaps
 from mapping.slam.tile_map_kernels import TILE_CELLS
 
@@ -66,7 +62,7 @@ class GmappingFilter:
         self.paths.extend(self.poses_map)
         self._cover(beams)
         self.maps.write(0, pose_map, beams.origins, beams.ends, beams.is_hit)
-        self.maps.resample(np.zeros(self.config.particles, dtype=np.int64))
+        self.maps.resample(np.zeros(self.config.particles, dtype=np.intp))
 
     def update(self, beams: BaseBeams) -> tuple[bool, NDArray[np.bool_]]:
         """Match a scan, weigh, resample and draw it.
@@ -136,20 +132,20 @@ class GmappingFilter:
         gather_full(table, maps.full, bits)
         found = sample_fits(pose, offsets, points, config.kernelSize, bits, table, maps.means)
         logs = self._log_likelihood(found)
-        weights = normalised_weights(logs)
+        weights = normalised(logs)
         mean = weights @ offsets
         apart = offsets - mean
         covariance = (weights * apart.T) @ apart + TINY_VARIANCE * np.eye(3)
         drawn = np.linalg.cholesky(covariance) @ self._rng.standard_normal(3)
         return np.asarray(pose + mean + drawn), float(logs.max() - np.log(weights.max()))
 
-    def _survivors(self) -> NDArray[np.int64]:
+    def _survivors(self) -> NDArray[np.intp]:
         """Resample when few particles carry the weight; tell whose child each particle is now."""
         config = self.config
-        weights = normalised_weights(self._log_weights / (config.ogain * config.particles))
+        weights = normalised(self._log_weights / (config.ogain * config.particles))
         if effective_number(weights) >= config.resampleThreshold * config.particles:
             return np.arange(config.particles)
-        parents = low_variance_sample(weights, self._rng.random())
+        parents = low_variance_sample(weights, config.particles, self._rng.random())
         self.resamplings += 1
         self.maps.resample(parents)
         self.paths.resample(parents)

@@ -50,7 +50,7 @@ class ParticlePaths:
         self._count += added
         self.steps += 1
 
-    def resample(self, parents: NDArray[np.int64]) -> None:
+    def resample(self, parents: NDArray[np.intp]) -> None:
         """Give every particle the path of its parent ``(particles,)``."""
         self._leaves = self._leaves[parents]
 

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from mapping.geometry import Pose, between, compose
 from mapping.messages import Imu, Odometry, accelerations
+from mapping.pose_covariance import carried
 from mapping.slam.fusion import FusedTrack
 from mapping.slam.keyframe_graph import KeyframeGraph, view_of
 from mapping.slam.local_map import LocalMap
@@ -106,7 +107,7 @@ class ScanTracker:
         if shoved:
             spread = spread + SHOVE_COVARIANCE
         self._reckon(corrected, spread)
-        covariance = _carried(self.covariance, self.pose, predicted, spread)
+        covariance = carried(self.covariance, self.pose, predicted, spread)
         self.local.follow(near, view_of(predicted, cloud))
         match = match_scan(self.local.field, cloud, predicted, covariance, self._matcher)
         if not match.refused and not shoved:
@@ -127,7 +128,7 @@ class ScanTracker:
 
     def _reckon(self, motion: Pose, spread: NDArray[np.float64]) -> None:
         moved = compose(self.reckoned, motion)
-        self.reckoned_covariance = _carried(self.reckoned_covariance, self.reckoned, moved, spread)
+        self.reckoned_covariance = carried(self.reckoned_covariance, self.reckoned, moved, spread)
         self.reckoned = moved
 
     def motion_since_scan(self) -> Pose | None:
@@ -143,14 +144,3 @@ class ScanTracker:
 
 def _is_still(motion: Pose) -> bool:
     return math.hypot(motion[0], motion[1]) < STILL_SHIFT and abs(motion[2]) < STILL_TURN
-
-
-def _carried(
-    covariance: NDArray[np.float64], pose: Pose, moved: Pose, spread: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """The covariance after a motion, in the map frame."""
-    dx, dy = moved[:2] - pose[:2]
-    cos, sin = math.cos(pose[2]), math.sin(pose[2])
-    carry = np.array([[1.0, 0.0, -dy], [0.0, 1.0, dx], [0.0, 0.0, 1.0]])
-    turn = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
-    return np.asarray(carry @ covariance @ carry.T + turn @ spread @ turn.T)

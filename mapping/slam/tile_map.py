@@ -129,7 +129,7 @@ class TileMaps:
         write_beams(table, cells, in_last, is_hit, self.full_share, *pool)
         return crossed
 
-    def resample(self, parents: NDArray[np.int64]) -> None:
+    def resample(self, parents: NDArray[np.intp]) -> None:
         """Replace the particles' maps by those of ``parents`` ``(particles,)``; nothing is copied.
 
         Tiles that nobody has any more are free again.

@@ -3,7 +3,7 @@ import pytest
 
 from evaluation.bench import loop_of, record_drive
 from evaluation.episode import EpisodeConfig, run_episode
-from evaluation.warm_up import TINY_ROOM
+from evaluation.kernels.warm_up import TINY_ROOM
 
 
 def test_a_drive_has_every_message_once() -> None:

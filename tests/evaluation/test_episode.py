@@ -12,9 +12,9 @@ import pytest
 from envs.floor_plan import Route
 from evaluation.episode import EpisodeConfig, run_episode
 from evaluation.episode_folder import write_run
+from evaluation.kernels.warm_up import TINY_ROOM
 from evaluation.progress import Progress
 from evaluation.result import TIMING_KEYS
-from evaluation.warm_up import TINY_ROOM
 from mapping.errors import TestbedError
 from mapping.io.map_server import read_map
 

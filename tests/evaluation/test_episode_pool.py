@@ -10,7 +10,7 @@ import pytest
 
 from evaluation.episode import EpisodeConfig
 from evaluation.episode_pool import Failure, Outcome, run_episodes
-from evaluation.run_record import read_run
+from evaluation.sweeps.run_record import read_run
 from mapping.errors import TestbedError
 
 TINY = """

@@ -9,7 +9,7 @@ import pytest
 from evaluation.episode import EpisodeConfig, run_episode
 from evaluation.episode_folder import write_run
 from evaluation.goals_file import write_goals
-from evaluation.warm_up import TINY_ROOM
+from evaluation.kernels.warm_up import TINY_ROOM
 from nav.navigator import ChosenGoal
 
 CONFIG = EpisodeConfig(world="tiny_room", mapper="ogm", seed=3, time_limit=60.0)

@@ -12,9 +12,9 @@ from mcap.reader import make_reader
 
 from evaluation.episode import EpisodeConfig, run_episode
 from evaluation.episode_folder import write_run
+from evaluation.kernels.warm_up import TINY_ROOM
 from evaluation.progress import Progress
 from evaluation.recorder import Recorder
-from evaluation.warm_up import TINY_ROOM
 from mapping.errors import TestbedError
 from mapping.geometry import compose
 from mapping.io.ros_library import message_types

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from evaluation.episode import EpisodeConfig, run_episode
+from evaluation.kernels.warm_up import TINY_ROOM, sparse_log
 from evaluation.recording import Recording
 from evaluation.replay import ReplayConfig, run_replay
 from evaluation.result import result_of, update_rates
-from evaluation.warm_up import TINY_ROOM, sparse_log
 from mapping.errors import TestbedError
 from mapping.gap_filling import fill_gaps
 from mapping.grid import OCCUPIED

@@ -44,6 +44,17 @@ def test_the_wheel_contains_every_asset(wheel: Path) -> None:
     assert assets <= names
 
 
+def test_the_wheel_contains_every_module(wheel: Path) -> None:
+    with zipfile.ZipFile(wheel) as archive:
+        names = set(archive.namelist())
+    modules = {
+        path.relative_to(ROOT).as_posix()
+        for package in ("assets", "mapping", "nav", "envs", "evaluation", "scripts")
+        for path in (ROOT / package).rglob("*.py")
+    }
+    assert modules <= names
+
+
 def test_the_wheel_runs_an_episode_in_a_clean_environment(wheel: Path, tmp_path: Path) -> None:
     home = tmp_path / "venv"
     venv.create(home, with_pip=False)

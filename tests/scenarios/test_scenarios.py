@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from evaluation.scenario_run import run_scenarios
-from evaluation.scenarios import SCENARIOS, gather
+from evaluation.scenarios.catalogue import SCENARIOS, gather
+from evaluation.scenarios.run import run_scenarios
 
 SHORT = ("turtlebot3_world", "narrow_door", "dropouts", "cluttered_office")
 """Pillars, a door hardly wider than the robot, a bad lidar among furniture (and a good one, to be

@@ -12,6 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from evaluation.kernels.warm_up import kernels_of_mapper
 from mapping.geometry import wrap_to_pi
 from mapping.io.tum import read_tum
 from nav.teleop import TeleopCommand
@@ -31,7 +32,7 @@ FILES = {
 @pytest.fixture(scope="module", autouse=True)
 def compiled() -> None:
     """No test waits for a compilation with its patience."""
-    compile_if_needed("ogm", simulates=True)
+    compile_if_needed(kernels_of_mapper("ogm", simulates=True))
 
 
 def test_a_drive_by_hand_then_autonomous_leaves_a_whole_run_folder(tmp_path: Path) -> None:

@@ -4,19 +4,19 @@ from pathlib import Path
 
 import pytest
 
-from scripts import first_run
+from evaluation.kernels.kernel_set import KernelSet
+from evaluation.kernels.warm_up import kernels_of_mapper
+from scripts.first_run import compile_if_needed
 from tests.scripts.test_bad_input import refused, refused_exploration
 
 
 @pytest.fixture
 def compiled(monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """The mappers whose kernels were compiled, on a machine where none are yet."""
-    mappers: list[str] = []
-    monkeypatch.setattr(first_run, "is_warm", lambda mapper, *, simulates: False)
-    monkeypatch.setattr(
-        first_run, "compile_kernels", lambda mapper, *, simulates: mappers.append(mapper)
-    )
-    return mappers
+    """Whose kernels were compiled, on a machine where none are yet."""
+    owners: list[str] = []
+    monkeypatch.setattr(KernelSet, "is_ready", False)
+    monkeypatch.setattr(KernelSet, "compile", lambda kernels: owners.append(kernels.owner))
+    return owners
 
 
 @pytest.mark.parametrize(
@@ -63,7 +63,7 @@ def test_a_good_run_compiles_and_says_so(
     compiled: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     checked: list[bool] = []
-    first_run.compile_if_needed("ogm", simulates=True, check=lambda: checked.append(True))
-    assert compiled == ["ogm"]
+    compile_if_needed(kernels_of_mapper("ogm", simulates=True), lambda: checked.append(True))
+    assert compiled == ["mapper ogm"]
     assert checked == [True]
     assert "compiling the kernels of mapper ogm" in capsys.readouterr().err

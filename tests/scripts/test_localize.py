@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from evaluation.localization_warm_up import tiny_map
+from evaluation.localization.warm_up import tiny_map
 from mapping.io.map_server import write_map
 from scripts.__main__ import run
 from tests.scripts.test_bad_input import refused

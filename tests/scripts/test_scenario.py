@@ -8,9 +8,9 @@ from xml.etree import ElementTree
 import pytest
 
 from envs.plan_yaml import write_plan
-from evaluation.warm_up import TINY_ROOM
+from evaluation.kernels.warm_up import TINY_ROOM
 from scripts.__main__ import run
-from tests.evaluation.scenario_files import write_scenario
+from tests.evaluation.scenarios.scenario_files import write_scenario
 
 QUICK = (
     ("world: lim_room", "world: tiny.yaml"),
@@ -92,7 +92,7 @@ def test_a_malformed_file_is_told_with_its_line(
 def test_ctrl_c_leaves_junit_xml_of_what_has_ended(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    with patch("evaluation.scenario_run.run_episodes", side_effect=KeyboardInterrupt):
+    with patch("evaluation.scenarios.run.run_episodes", side_effect=KeyboardInterrupt):
         assert scenario_run(tmp_path) == 130
     assert "interrupted: 0 of 0 passed" in capsys.readouterr().out
     assert len(ElementTree.parse(tmp_path / "out" / "junit.xml").getroot()) == 0

@@ -1,0 +1,1 @@
+"""Turns an episode into a moving picture of its map as it grew."""

@@ -1,0 +1,1 @@
+"""Tells which compiled kernels a run needs, and has them compiled before it is measured."""

@@ -1,0 +1,1 @@
+"""Turns scenario files into whole explorations with pass criteria, judged and tabled."""

@@ -1,0 +1,1 @@
+"""Turns a run's map and poses into scores beside those of ``mapping``."""

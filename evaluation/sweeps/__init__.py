@@ -1,0 +1,1 @@
+"""Turns combinations of settings into run folders, and run folders into tables and a page."""
