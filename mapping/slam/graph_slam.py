@@ -40,6 +40,8 @@ class GraphConfig(ScanMatchConfig):
     """Or turned so far [rad]."""
     kept_each: int = 6
     """At most so many are kept for each keyframe."""
+    refine: bool = True
+    """Whether the finished map's surfaces are moved to where all kept scans say."""
     last_rounds: int = 10
     """Steps of the last optimisation."""
     scale_step: float = 2e-4
@@ -81,14 +83,16 @@ class GraphSlam(ScanMatch):
         self._kept_pose: Pose | None = None
 
     def finish(self) -> None:
-        """Optimise to the end and draw the whole map anew."""
+        """Optimise to the end, draw the map anew if it is off, and refine its surfaces."""
         if self.loops:
             self._correct(self._nearest, self.config.last_rounds)
         self.painter.scale = self._metric_scale()
         if self.painter.is_redrawing or self.painter.error > self.grid.resolution:
             self.painter.redraw()
             self.painter.work(len(self.painter))
-            self.pose_map = self._pose_now()
+        if self.config.refine:
+            self.painter.refine()
+        self.pose_map = self._pose_now()
 
     def _add_keyframe(self, cloud: ScanCloud) -> int:
         """Also look whether the keyframe closes a loop."""

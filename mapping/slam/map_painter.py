@@ -12,6 +12,7 @@ from mapping.ogm import OgmConfig
 from mapping.slam.keyframe_graph import KeyframeGraph
 from mapping.slam.metric_scale import grown, scaled
 from mapping.slam.sweep import Sweep
+from mapping.surface_refinement import SurfaceRefinement
 
 ARM = 3.0
 """A turn of a keyframe moves what it saw, typically so far away [m], sideways."""
@@ -94,6 +95,15 @@ class MapPainter:
         self.grid.redraws += 1
         self._drawn, self._drawn_scale = self._next_drawn, scale
         self._next_grid = None
+
+    def refine(self) -> None:
+        """Move the map's surfaces to where all kept scans say, from their corrected poses."""
+        poses, scale = self.corrected(self._graph.poses), self.scale
+        refinement = SurfaceRefinement(self.grid, self._config)
+        for keyframe, place, sweep in self._kept:
+            sweep.measure(refinement, compose(poses[keyframe], scaled(place, scale)), scale)
+        refinement.write()
+        self._drawn, self._drawn_scale = poses, scale
 
     def _extended(self, drawn: Pose, scale: float) -> Pose:
         """Drawn poses with those of newer keyframes, each where it lies from the one before it."""

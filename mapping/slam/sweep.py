@@ -10,6 +10,7 @@ from mapping.grid import OccupancyGrid
 from mapping.messages import LaserScan
 from mapping.ogm import OgmConfig, draw_beams
 from mapping.sensor_model import Beams
+from mapping.surface_refinement import SurfaceRefinement
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -34,16 +35,25 @@ class Sweep:
 
         ``scale`` is what a metre that the lidar measured is believed to be [m].
         """
-        if len(self.indices) == 0:
-            return
+        if len(self.indices) > 0:
+            beams, angles, poses = self._in_metres(scale)
+            draw_beams(grid, config, beams, angles, self.angle_increment, pose_map, poses)
+
+    def measure(self, refinement: SurfaceRefinement, pose_map: Pose, scale: float = 1.0) -> None:
+        """Tell where surfaces lie, as taken from a pose; arguments as those of ``draw``."""
+        if len(self.indices) > 0:
+            beams, angles, poses = self._in_metres(scale)
+            refinement.add(beams, angles, self.angle_increment, pose_map, poses)
+
+    def _in_metres(self, scale: float) -> tuple[Beams, NDArray[np.float64], Pose]:
+        """The beams, their directions ``(n,)`` [rad], and the robot's poses at them ``(n, 3)``."""
         beams = Beams(
             indices=self.indices.astype(np.int64),
             lengths=scale * self.lengths.astype(np.float64),
             hits=self.hits,
         )
         angles = self.angle_min + self.indices.astype(np.float64) * self.angle_increment
-        poses = self.poses_base.astype(np.float64) * (scale, scale, 1.0)
-        draw_beams(grid, config, beams, angles, self.angle_increment, pose_map, poses)
+        return beams, angles, self.poses_base.astype(np.float64) * (scale, scale, 1.0)
 
 
 def make_sweep(scan: LaserScan, beams: Beams, poses_base: Pose) -> Sweep:

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 
 from mapping.errors import TestbedError
 from mapping.geometry import between
-from mapping.grid import OCCUPIED, GridConfig
+from mapping.grid import FREE, OCCUPIED, GridConfig
 from mapping.slam.graph_slam import GraphConfig, GraphSlam
 from mapping.slam.odometry_calibration import CalibrationConfig
 from tests.mapping.slam.rooms import (
@@ -95,7 +95,7 @@ def test_finishing_draws_the_map_where_the_corrected_poses_are(told: Told, lap: 
     fed(mapper, lap.periods[: told.loops.index(told.loops[-1]) + 20])
     assert mapper.painter.is_redrawing
     mapper.finish()
-    assert mapper.grid.redraws == 1
+    assert mapper.grid.redraws == 2  # drawn anew, then refined
     assert not mapper.painter.is_redrawing
     assert mapper.painter.error <= mapper.grid.resolution
     # the pose is the last scan's, and 0.2 s of driving
@@ -114,6 +114,21 @@ def test_finishing_draws_the_map_where_the_corrected_poses_are(told: Told, lap: 
     mapper.finish()
     assert mapper.trajectory.poses == pytest.approx(poses, abs=1e-3)
     assert np.mean(mapper.grid.log_odds != cells) < 0.01
+
+
+def test_a_finished_map_is_refined_unless_that_is_not_wanted() -> None:
+    run = drive(ring(), RING_WAY[:3], np.random.default_rng(1), scale=0.0, drift=0.0)
+    grids = []
+    for refine in (False, True):
+        mapper = GraphSlam(GraphConfig(refine=refine), start_pose_map=run.start)
+        fed(mapper, run.periods)
+        before = mapper.grid.redraws
+        mapper.finish()
+        assert mapper.grid.redraws - before >= refine
+        grids.append(mapper.grid)
+    drawn, refined = (grid.states() for grid in grids)
+    assert np.count_nonzero(refined == OCCUPIED) < 0.8 * np.count_nonzero(drawn == OCCUPIED)
+    assert np.count_nonzero(refined == FREE) > np.count_nonzero(drawn == FREE)
 
 
 def test_the_pose_jumps_no_farther_than_the_map_is_wrong(lap: Run) -> None:

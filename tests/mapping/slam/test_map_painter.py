@@ -124,6 +124,19 @@ def test_the_error_is_how_far_keyframes_are_drawn_from_their_places() -> None:
     assert painter.error == pytest.approx(0.0, abs=1e-12)
 
 
+def test_refining_puts_walls_where_the_corrected_poses_saw_them() -> None:
+    painter, graph = painted()
+    moved = compose(np.array([0.012, -0.008, 0.0]), POSES)
+    graph.correct(moved)
+    painter.refine()
+    assert painter.grid.redraws == 1
+    assert painter.error == pytest.approx(0.0, abs=1e-12)
+    true, _ = painted(moved)
+    true.refine()
+    seen = painter.grid.states() == OCCUPIED
+    assert np.count_nonzero(seen & (true.grid.states() == OCCUPIED)) > 0.9 * np.count_nonzero(seen)
+
+
 def test_work_without_a_redraw_changes_nothing() -> None:
     painter, _ = painted()
     before = painter.grid.log_odds.copy()
