@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from mapping.burger import ROBOT_RADIUS
 from mapping.errors import TestbedError
-from mapping.grid import UNKNOWN, OccupancyGrid
+from mapping.grid import FREE, UNKNOWN, OccupancyGrid
 from nav.costmap_kernels import Window, measure_clearance, pool_states, price
 
 
@@ -53,6 +53,11 @@ class Costmap:
         self.clearance: NDArray[np.float32] = np.zeros((0, 0), dtype=np.float32)
         self.cost: NDArray[np.float32] = np.zeros((0, 0), dtype=np.float32)
         self._redraws = 0
+
+    @property
+    def free_area(self) -> float:
+        """Area of the cells known to be free [m2]."""
+        return float(np.count_nonzero(self.states == FREE) * self.resolution**2)
 
     def glance(self, grid: OccupancyGrid, center: ArrayLike, reach: float) -> None:
         """Take over the states alone: enough to see what is known, and three times cheaper.

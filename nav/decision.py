@@ -38,6 +38,9 @@ class DecisionConfig:
     """Worth of settling a frontier at all [m2]: what is left behind costs a way of its own."""
     loyalty: float = 4.0
     """Time by which another first leg must be better to be turned to [s]: no oscillation."""
+    end_share: float = 1.0
+    """What the end of the tour counts, as a share of all that is seen on it, beside when each part
+    is seen: what would be left behind is taken along where that shortens the whole."""
     toured: int = 24
     """At most so many viewpoints are put in order, the best by worth per time."""
 
@@ -47,6 +50,8 @@ class DecisionConfig:
             raise TestbedError("decision: speed, turn_speed and settling_time must be above 0")
         if self.rule not in RULES:
             raise TestbedError(f"decision rule: {self.rule!r}; must be one of {', '.join(RULES)}")
+        if not self.end_share >= 0.0:
+            raise TestbedError(f"decision end_share: {self.end_share}; must be 0 or more")
         if self.toured < 1:
             raise TestbedError(f"decision toured: {self.toured}; must be at least 1")
 
@@ -57,6 +62,7 @@ def choose(
     pose: Pose,
     current: Viewpoint | None,
     config: DecisionConfig,
+    loyalty: float = 1.0,
 ) -> Viewpoint | None:
     """The viewpoint that the rule chooses; None of none.
 
@@ -68,12 +74,13 @@ def choose(
         pose: Where the robot is ``(3,)``.
         current: Where it is going, if anywhere; favoured.
         config: What is weighed how.
+        loyalty: How many times the loyal one ``config`` asks to be to the current viewpoint.
     """
     if config.rule != TOUR:
         return GREEDY_RULES[config.rule](viewpoints, field, pose)
     best: dict[int, tuple[float, Viewpoint, float]] = {}
     for viewpoint in viewpoints:
-        time = _first_leg(viewpoint, pose, current, config)
+        time = _first_leg(viewpoint, pose, current, config, loyalty)
         ratio = _worth(viewpoint, config) / time
         key = id(viewpoint.frontier)
         if key not in best or ratio > best[key][0]:
@@ -85,7 +92,7 @@ def choose(
     first_legs = np.array([time for _, _, time in leading])
     weights = np.array([_worth(viewpoint, config) for viewpoint in chosen])
     legs = _legs(chosen, field) / config.speed + config.settling_time
-    return chosen[int(best_order(first_legs, legs, weights)[0])]
+    return chosen[int(best_order(first_legs, legs, weights, config.end_share)[0])]
 
 
 def _worth(viewpoint: Viewpoint, config: DecisionConfig) -> float:
@@ -93,14 +100,18 @@ def _worth(viewpoint: Viewpoint, config: DecisionConfig) -> float:
 
 
 def _first_leg(
-    viewpoint: Viewpoint, pose: Pose, current: Viewpoint | None, config: DecisionConfig
+    viewpoint: Viewpoint,
+    pose: Pose,
+    current: Viewpoint | None,
+    config: DecisionConfig,
+    loyalty: float,
 ) -> float:
     """Time to a viewpoint from here [s], less what loyalty to the current frontier is worth."""
     offset = viewpoint.place - pose[:2]
     turn = abs(float(wrap_to_pi(np.arctan2(offset[1], offset[0]) - pose[2])))
     time = config.settling_time + viewpoint.cost / config.speed + turn / config.turn_speed
     if current is not None and viewpoint.is_near(current):
-        time = max(time - config.loyalty, LEAST_TIME)
+        time = max(time - loyalty * config.loyalty, LEAST_TIME)
     return time
 
 

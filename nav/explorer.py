@@ -20,6 +20,7 @@ from nav.explorer_config import ExplorerConfig
 from nav.former_walls import FormerWalls
 from nav.frontier import Frontier, find_frontiers
 from nav.given_up import GivenUp
+from nav.loyalty import Loyalty
 from nav.map_jump import shift_at
 from nav.navigator import (
     COMPLETE,
@@ -31,6 +32,7 @@ from nav.navigator import (
     Plan,
 )
 from nav.planner import CostField
+from nav.put_off import PutOff
 from nav.returns import Returns
 from nav.viewpoint import Viewpoint, ViewpointFinder, gain_at
 from nav.visited_places import VisitedPlaces
@@ -64,6 +66,8 @@ class FrontierExplorer:
         self._visited = VisitedPlaces(self.config.visited_places)
         self._former_walls = FormerWalls(self.config.former_walls)
         self._returns = Returns()
+        self._put_off = PutOff(self.config.put_off)
+        self._loyalty = Loyalty()
         self._task = Task.EXPLORE
         self._home: Pose | None = None
         self._target: Viewpoint | None = None
@@ -220,7 +224,10 @@ class FrontierExplorer:
         field = CostField.around(self._costmap, pose[:2])
         visited = self._visited.on(self._costmap)
         viewpoints = self._finder.find(field, open_ones, visited, pose[:2])
-        best = choose(viewpoints, field, pose, self._target, config.decision)
+        area, loyalty = self._costmap.free_area, self._loyalty
+        worth_now = self._put_off.worth_now(viewpoints, area)
+        best = choose(worth_now, field, pose, self._target, config.decision, loyalty.times)
+        loyalty.note(self._target, best, area)
         if best is None:
             self._note_left_over(open_ones)
         return best, field

@@ -8,6 +8,7 @@ from nav.decision import DecisionConfig
 from nav.driver_config import DriverConfig
 from nav.former_walls import FormerWallsConfig
 from nav.frontier import FrontierConfig
+from nav.put_off import PutOffConfig
 from nav.viewpoint import ViewpointConfig
 from nav.visited_places import VisitedPlacesConfig
 
@@ -21,6 +22,7 @@ class ExplorerConfig:
     viewpoint: ViewpointConfig = ViewpointConfig()
     former_walls: FormerWallsConfig = FormerWallsConfig()
     visited_places: VisitedPlacesConfig = VisitedPlacesConfig()
+    put_off: PutOffConfig = PutOffConfig()
     decision: DecisionConfig = DecisionConfig()
     driver: DriverConfig = DriverConfig()
     decide_every: float = 4.0

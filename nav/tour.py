@@ -2,8 +2,8 @@
 
 Going to the nearest frontier wastes time on crumbs, going to the largest leaves crumbs behind that
 cost a second way. Minimising the sum of gain times arrival time over the whole tour (the weighted
-travelling repairman problem) weighs one against the other; only the first leg is driven before
-everything is decided anew.
+travelling repairman problem) weighs one against the other; the end of the tour counts besides, as
+in the travelling salesman problem. Only the first leg is driven before everything is decided anew.
 """
 
 import numpy as np
@@ -17,7 +17,10 @@ ROUNDING = 1e-9
 
 
 def best_order(
-    first_legs: NDArray[np.float64], legs: NDArray[np.float64], weights: NDArray[np.float64]
+    first_legs: NDArray[np.float64],
+    legs: NDArray[np.float64],
+    weights: NDArray[np.float64],
+    end_share: float = 0.0,
 ) -> NDArray[np.int64]:
     """The order ``(n,)`` in which to visit n places, by greedy insertion and local search.
 
@@ -25,9 +28,10 @@ def best_order(
         first_legs: Time from here to each place ``(n,)`` [s].
         legs: Time from each place (row) to each other ``(n, n)`` [s].
         weights: What each place is worth ``(n,)``.
+        end_share: What the arrival at the last place counts, as a share of all weights.
     """
     order: NDArray[np.int64] = _by_ratio(first_legs, legs, weights)
-    _improve(order, first_legs, legs, weights)
+    _improve(order, first_legs, legs, weights, end_share)
     return order
 
 
@@ -37,14 +41,15 @@ def latency(
     first_legs: NDArray[np.float64],
     legs: NDArray[np.float64],
     weights: NDArray[np.float64],
+    end_share: float,
 ) -> float:
-    """Sum over the places of worth times arrival time [s]."""
+    """Sum over the places of worth times arrival time [s], the last one's once more by share."""
     time = first_legs[order[0]]
     total = weights[order[0]] * time
     for k in range(1, len(order)):
         time += legs[order[k - 1], order[k]]
         total += weights[order[k]] * time
-    return float(total)
+    return float(total + end_share * weights.sum() * time)
 
 
 @njit(cache=True)
@@ -74,10 +79,11 @@ def _improve(
     first_legs: NDArray[np.float64],
     legs: NDArray[np.float64],
     weights: NDArray[np.float64],
+    end_share: float,
 ) -> None:
     """Reverse stretches (2-opt) and move places (or-opt) while that helps, in place."""
     count = len(order)
-    best = latency(order, first_legs, legs, weights)
+    best = latency(order, first_legs, legs, weights, end_share)
     improved = True
     while improved:
         improved = False
@@ -86,10 +92,10 @@ def _improve(
                 if i == j:
                     continue
                 trial = _moved(order, i, j)
-                cost = latency(trial, first_legs, legs, weights)
+                cost = latency(trial, first_legs, legs, weights, end_share)
                 if i < j:
                     reversed_ = _reversed(order, i, j)
-                    other = latency(reversed_, first_legs, legs, weights)
+                    other = latency(reversed_, first_legs, legs, weights, end_share)
                     if other < cost:
                         trial, cost = reversed_, other
                 if cost < best * (1.0 - ROUNDING):

@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from mapping.burger import LIDAR_RANGE_MAX
 from mapping.errors import TestbedError
-from mapping.grid import FREE
 from nav.costmap import Costmap
 from nav.frontier import Frontier
 from nav.planner import CostField
@@ -104,8 +103,7 @@ class ViewpointFinder:
         """
         kept, self._kept = self._kept, {}
         viewpoints = []
-        floor = float(np.count_nonzero(field.costmap.states == FREE)) * field.costmap.resolution**2
-        per_metre = self.config.min_share_per_metre * floor
+        per_metre = self.config.min_share_per_metre * field.costmap.free_area
         for frontier in frontiers:
             key = self._key(frontier)
             is_far = np.hypot(*(frontier.middle - robot)) > self.config.keep_beyond

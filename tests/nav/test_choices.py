@@ -10,6 +10,7 @@ from nav.decision import DecisionConfig, choose
 from nav.frontier import Frontier
 from nav.given_up import GivenUp
 from nav.headway import Headway, HeadwayConfig
+from nav.loyalty import Loyalty
 from nav.navigators import make_navigator
 from nav.planner import CostField
 from nav.reactive import Reactive
@@ -56,6 +57,25 @@ def test_a_slightly_better_frontier_does_not_make_the_robot_turn_back() -> None:
     here, there = viewpoint_at(6.0, 5.0, 1.0), viewpoint_at(4.2, 5.0, 3.0)
     assert choice(here, there) is there
     assert choice(here, there, current=here) is here
+
+
+def test_a_robot_that_changed_its_mind_in_vain_grows_loyal() -> None:
+    here, there = viewpoint_at(8.0, 5.0, 1.0), viewpoint_at(4.0, 5.0, 4.0)
+    assert choice(here, there, current=here) is there
+    loyalty = Loyalty()
+    for current, chosen in ((here, there), (there, here), (here, there)):
+        loyalty.note(current, chosen, area=10.0)
+    assert loyalty.times == 8.0
+    assert choose([here, there], OPEN_FIELD, MIDDLE, here, DecisionConfig(), loyalty.times) is here
+    loyalty.note(here, here, area=11.0)
+    assert loyalty.times == 1.0, "it has seen something new since"
+
+
+def test_going_on_and_setting_out_are_no_changes_of_mind() -> None:
+    loyalty, here = Loyalty(), viewpoint_at(6.0, 5.0, 1.0)
+    for current, chosen in ((None, here), (here, here), (here, None)):
+        loyalty.note(current, chosen, area=0.0)
+    assert loyalty.times == 1.0
 
 
 def test_of_no_viewpoints_none_is_chosen() -> None:

@@ -152,6 +152,18 @@ def test_a_robot_that_turns_about_marks_walls_where_they_are_and_no_door(seed: i
     assert not np.any((through[:, 0] < 0.15) & (through[:, 1] < 0.05))
 
 
+def test_a_wall_in_the_last_free_cell_is_no_frontier_any_more() -> None:
+    """Its surface lies just inside a cell whose greater part is free."""
+    grid = grid_from_text("\n".join(["." * 30 + "?" * 10] * 60))
+    wall = [(1.49, 0.01 + 0.05 * k) for k in range(60)]
+    costmap, returns = costmap_of(grid), Returns()
+    for _ in range(2):
+        returns.note(costmap, view_of(wall))
+    returns.mark(costmap)
+    assert find_frontiers(costmap, FrontierConfig()) == []
+    assert (costmap.states[:, :29] == FREE).all(), "the robot may stand beside it"
+
+
 def test_a_wall_seen_through_a_thin_map_is_no_frontier_any_more() -> None:
     """Its returns lie 5 cm apart and the map's cells between them are unknown."""
     grid = grid_from_text("\n".join(["." * 30 + "?" * 10] * 60))

@@ -20,22 +20,36 @@ def random_places(seed: int, count: int) -> tuple[np.ndarray, np.ndarray, np.nda
 
 
 def plain_latency(
-    order: tuple[int, ...], first: np.ndarray, legs: np.ndarray, worth: np.ndarray
+    order: tuple[int, ...],
+    first: np.ndarray,
+    legs: np.ndarray,
+    worth: np.ndarray,
+    end_share: float = 0.0,
 ) -> float:
     times = np.cumsum([first[order[0]], *(legs[a, b] for a, b in pairwise(order))])
-    return float(np.sum(times * worth[list(order)]))
+    return float(np.sum(times * worth[list(order)]) + end_share * worth.sum() * times[-1])
 
 
-@given(seed=st.integers(0, 10_000), count=st.integers(1, 6))
+@given(seed=st.integers(0, 10_000), count=st.integers(1, 6), end_share=st.floats(0.0, 5.0))
 @settings(max_examples=30, deadline=None)
-def test_the_order_is_nearly_as_good_as_the_best_of_all(seed: int, count: int) -> None:
+def test_the_order_is_nearly_as_good_as_the_best_of_all(
+    seed: int, count: int, end_share: float
+) -> None:
     first, legs, worth = random_places(seed, count)
-    order = best_order(first, legs, worth)
+    order = best_order(first, legs, worth, end_share)
     assert sorted(order) == list(range(count))
-    best = min(plain_latency(p, first, legs, worth) for p in permutations(range(count)))
-    found = plain_latency(tuple(order), first, legs, worth)
-    assert latency(order, first, legs, worth) == pytest.approx(found)
+    best = min(plain_latency(p, first, legs, worth, end_share) for p in permutations(range(count)))
+    found = plain_latency(tuple(order), first, legs, worth, end_share)
+    assert latency(order, first, legs, worth, end_share) == pytest.approx(found)
     assert found <= 1.1 * best, "local search: a tenth from the optimum at worst, mostly there"
+
+
+def test_what_would_cost_a_second_way_is_taken_along_when_the_end_counts() -> None:
+    """A crumb to the west, 4 m from here, and rooms one after another to the east."""
+    x = np.array([-4.0, 5.0, 10.0, 15.0, 20.0])
+    legs, worth = np.abs(x[:, None] - x), np.array([0.5, 4.0, 4.0, 4.0, 4.0])
+    assert best_order(np.abs(x), legs, worth)[-1] == 0
+    assert best_order(np.abs(x), legs, worth, 5.0).tolist() == [0, 1, 2, 3, 4]
 
 
 def test_costs_between_places_are_never_too_low_and_right_across_a_corridor() -> None:
