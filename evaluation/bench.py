@@ -9,6 +9,7 @@ import numpy as np
 
 from envs.worlds import load_world
 from evaluation.episode import ENVIRONMENT, Episode, EpisodeConfig, make_agent, run_episode
+from evaluation.result import percentile_ms
 from mapping.burger import LIDAR_BEAMS, LIDAR_SCAN_TIME
 from mapping.geometry import Pose
 from mapping.mapper import Mapper
@@ -50,6 +51,8 @@ class Loop:
     """Physics, sensors, environment and bookkeeping."""
     mapping_ms: float
     navigation_ms: float
+    decision_ms: float | None
+    """Median wall time of one decision where to go: frontiers, gains, order and path."""
 
 
 def bench_stages() -> list[Stage]:
@@ -105,6 +108,7 @@ def loop_of(episode: Episode) -> Loop:
         simulation_ms=(episode.wall_time - mapping - navigation) * per_second,
         mapping_ms=mapping * per_second,
         navigation_ms=navigation * per_second,
+        decision_ms=percentile_ms(episode.decision_seconds, 50),
     )
 
 

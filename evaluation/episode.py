@@ -116,6 +116,8 @@ class Episode:
     """Stamp of the scan that each took in ``(n,)`` [s]."""
     navigator_seconds: NDArray[np.float64]
     """Wall time of each command ``(n,)`` [s]."""
+    decision_seconds: NDArray[np.float64]
+    """The same of those in which the navigator weighed where to go ``(n,)`` [s]."""
     dropped_frontiers: tuple[DroppedFrontier, ...]
     goals: tuple[ChosenGoal, ...]
     """What the navigator set out for, in order."""
@@ -275,6 +277,7 @@ def drive_episode(
         map_update_seconds=np.array(agent.map_update_seconds, dtype=np.float64),
         map_update_stamps=np.array(agent.map_update_stamps, dtype=np.float64),
         navigator_seconds=np.array(agent.navigator_seconds, dtype=np.float64),
+        decision_seconds=np.array(agent.decision_seconds, dtype=np.float64),
         dropped_frontiers=agent.navigator.dropped_frontiers,
         goals=agent.navigator.goals,
         recorder=recorder,

@@ -85,6 +85,8 @@ def result_of_replay(
         "scans_dropped": replay.scans_dropped,
         "map_update_ms_p50": percentile_ms(seconds, 50),
         "map_update_ms_p99": percentile_ms(seconds, 99),
+        "decision_ms_p50": None,
+        "decision_ms_p99": None,
         "map_update_rate_hz": replay.map_updates / replay.log_time if replay.log_time else None,
         **update_rates(replay.map_update_stamps),
         "map_file_kb": map_file_kb,

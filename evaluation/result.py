@@ -24,6 +24,8 @@ TIMING_KEYS = (
     "real_time_factor",
     "map_update_ms_p50",
     "map_update_ms_p99",
+    "decision_ms_p50",
+    "decision_ms_p99",
     "peak_rss_mb",
 )
 """Keys that differ between runs of the same seed; every other is the same to the last digit."""
@@ -70,6 +72,8 @@ def result_of(
         "scans_dropped": episode.scans_dropped,
         "map_update_ms_p50": percentile_ms(episode.map_update_seconds, 50),
         "map_update_ms_p99": percentile_ms(episode.map_update_seconds, 99),
+        "decision_ms_p50": percentile_ms(episode.decision_seconds, 50),
+        "decision_ms_p99": percentile_ms(episode.decision_seconds, 99),
         "map_update_rate_hz": episode.map_updates / episode.sim_time,
         **update_rates(episode.map_update_stamps),
         "map_file_kb": map_file_kb,

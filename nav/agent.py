@@ -26,6 +26,8 @@ class MappingAgent:
         """Stamps of those scans [s]."""
         self.navigator_seconds = array("f")
         """Wall time of each navigator command [s]."""
+        self.decision_seconds = array("f")
+        """The same of those commands in which it weighed where to go [s]."""
 
     def act(self, observation: Observation) -> Action:
         """Update the map with all messages of the last control period, then command.
@@ -46,6 +48,9 @@ class MappingAgent:
             self.map_update_seconds.append(mapped - started)
             if scan is not None:
                 self.map_update_stamps.append(scan.stamp)
+        decisions = self.navigator.decisions
         twist = self.navigator.command(self.mapper.grid, self.mapper.pose_map, scan)
         self.navigator_seconds.append(perf_counter() - mapped)
+        if self.navigator.decisions > decisions:
+            self.decision_seconds.append(self.navigator_seconds[-1])
         return np.array([twist.linear_x, twist.angular_z], dtype=np.float32)

@@ -59,6 +59,7 @@ class FrontierExplorer:
         self.config = config or ExplorerConfig()
         self.status = RUNNING
         self.goals: tuple[ChosenGoal, ...] = ()
+        self.decisions = 0
         self._costmap = Costmap(self.config.costmap)
         self._driver = Driver(self.config.driver)
         self._given_up = GivenUp()
@@ -201,6 +202,7 @@ class FrontierExplorer:
 
     def _decide(self, grid: OccupancyGrid, pose: Pose) -> None:
         """Look at the map and set out for the best viewpoint, or home when none is left."""
+        self.decisions += 1
         self._decided_at = self._glanced_at = self._driver.time
         self._look(grid, pose)
         if self._task is Task.EXPLORE:

@@ -84,6 +84,10 @@ class Navigator(Protocol):
     def goals(self) -> tuple[ChosenGoal, ...]:
         """What it set out for until now, in order, without the way home; none of one that roams."""
 
+    @property
+    def decisions(self) -> int:
+        """How often it has weighed where to go until now."""
+
     def command(self, grid: OccupancyGrid, pose_map: Pose, scan: LaserScan | None) -> Twist:
         """The velocity for the next control period.
 

@@ -43,6 +43,7 @@ class Reactive:
         self.status = RUNNING
         self.dropped_frontiers: tuple[DroppedFrontier, ...] = ()
         self.goals: tuple[ChosenGoal, ...] = ()
+        self.decisions = 0
         self._last = Twist()
         self._turning = 0.0
 

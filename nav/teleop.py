@@ -82,6 +82,11 @@ class Teleop:
         """What autonomy set out for, each time it drove; a person's goals are not known."""
         return self._goals if self._autonomy is None else self._goals + self._autonomy.goals
 
+    @property
+    def decisions(self) -> int:
+        """Those of autonomy, while it drives."""
+        return 0 if self._autonomy is None else self._autonomy.decisions
+
     def tell(self, command: TeleopCommand) -> None:
         """Take a command; one to drive takes over from autonomy, beginning at rest."""
         if command is TeleopCommand.GO:

@@ -57,6 +57,7 @@ class Waypoints:
         self.status = RUNNING
         self.dropped_frontiers: tuple[DroppedFrontier, ...] = ()
         self.goals: tuple[ChosenGoal, ...] = ()
+        self.decisions = 0
         self._places = checked_route(places)
         self._next = 0
         self._costmap = Costmap(self.config.costmap)

@@ -43,7 +43,8 @@ def run(arguments: list[str]) -> int:
         print(_stage_row(stage))
     print(
         f"\n{'whole loop, ' + options.mapper:<23} {'simulated s':>12} {'x real time':>12}"
-        f" {'simulation':>11} {'mapping':>8} {'navigation':>11}   ms per simulated s"
+        f" {'simulation':>11} {'mapping':>8} {'navigation':>11} ms per simulated s"
+        f" {'ms a decision':>14}"
     )
     loops = []
     for world in tqdm(options.worlds, disable=not is_terminal(), leave=False):
@@ -74,4 +75,5 @@ def _loop_row(loop: Loop) -> str:
     return (
         f"{Path(loop.world).stem:<23} {loop.sim_time:>12.0f} {loop.real_time_factor:>12.0f}"
         f" {loop.simulation_ms:>11.2f} {loop.mapping_ms:>8.2f} {loop.navigation_ms:>11.2f}"
+        f" {'-' if loop.decision_ms is None else format(loop.decision_ms, '.1f'):>33}"
     )

@@ -66,6 +66,11 @@ class DriveSession:
         return self._teleop.goals
 
     @property
+    def decisions(self) -> int:
+        """How often autonomy has weighed where to go."""
+        return self._teleop.decisions
+
+    @property
     def late_share(self) -> float:
         """Share of the control periods in which the machine was too slow."""
         return self._late_periods / max(self._periods, 1)

@@ -27,6 +27,7 @@ DESIGN_KEYS = set(
     "false_free wall_thickness_ratio ate_rmse_m ate_max_m yaw_error_max_deg ate_aligned_rmse_m "
     "ate_online_rmse_m "
     "rpe_trans_rmse_m rpe_rot_rmse_deg map_updates scans_dropped map_update_ms_p50 "
+    "decision_ms_p50 decision_ms_p99 "
     "map_update_ms_p99 map_update_rate_hz map_update_rate_min_hz map_update_rate_median_hz "
     "map_file_kb peak_rss_mb home_distance_m "
     "dropped_frontiers map_length_error map_reloads contacts_by_people ghost_area_m2".split()
