@@ -33,7 +33,7 @@ class Driver:
         self.max_speed = self.config.follower.limits.max_linear
         self._follower = PathFollower(self.config.follower)
         self._safety = Safety(self.config.safety)
-        self._recovery = Recovery(self.config.recovery)
+        self._recovery = Recovery(self.config.recovery, self.config.safety)
         self._scan_points = ScanPoints()
         self._movers = Movers(self.config.movers)
         self._yielding = Yielding(self.config.yielding)
@@ -98,7 +98,9 @@ class Driver:
 
     def recover(self) -> Twist | None:
         """Go on with the recovery; None when it is over."""
-        twist = self._recovery.command(self._pose, self._scan_points.points, self.period)
+        twist = self._recovery.command(
+            self._pose, self._scan_points.points, self._grid, self.period
+        )
         return None if twist is None else self._move(twist)
 
     def set_path(self, path: NDArray[np.float64]) -> None:

@@ -251,8 +251,9 @@ class FrontierExplorer:
     def _go_home(self, pose: Pose) -> None:
         assert self._home is not None
         field = CostField.around(self._costmap, pose[:2])
-        if field.reaches(self._home[:2]):
-            self._set_out(field, self._home[:2], None)
+        place = field.nearest_reached(self._home[:2], self.config.home_within)
+        if place is not None:
+            self._set_out(field, place, None)
         elif float(np.hypot(*(self._home - pose)[:2])) < 2.0 * self.config.home_tolerance:
             self._finish(COMPLETE)
         else:

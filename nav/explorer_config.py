@@ -42,6 +42,9 @@ class ExplorerConfig:
     """Distance to a viewpoint at which it is reached [m]."""
     home_tolerance: float = 0.08
     """Distance to the start at which the robot is home [m]."""
+    home_within: float = 0.2
+    """Where the start itself is closer to a wall than a path may be, the robot goes to the nearest
+    place up to so far from it [m]."""
     recoveries_per_goal: int = 2
     """Recoveries on the way to a frontier after which it is given up."""
     memory_shift: float = 0.15

@@ -64,6 +64,21 @@ class CostField:
         """Whether a way to the point (x, y) is known."""
         return bool(np.isfinite(self.cost_at(point)))
 
+    def nearest_reached(self, point: ArrayLike, within: float) -> NDArray[np.float64] | None:
+        """The place nearest to a point (x, y) that a way is known to; None if none is so near [m].
+
+        The point itself if it is reached, else the middle of a cell.
+        """
+        point = np.asarray(point, dtype=np.float64)[:2]
+        if self.reaches(point):
+            return point
+        places = self.costmap.cell_to_world(np.argwhere(np.isfinite(self.cost_to_come)))
+        if len(places) == 0:
+            return None
+        gaps = np.hypot(*(places - point).T)
+        nearest = int(np.argmin(gaps))
+        return np.asarray(places[nearest]) if gaps[nearest] <= within else None
+
     def cost_at(self, point: ArrayLike) -> float:
         """Cost to come to the point (x, y); inf outside the map."""
         row, column = self.costmap.world_to_cell(point)

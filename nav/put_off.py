@@ -20,6 +20,8 @@ class PutOffConfig:
 
     share: float = 0.03
     """The frontiers that wait show this share of the known floor together, at most; 0 for none."""
+    most: float = 1.0
+    """One that shows more never waits [m2]: behind it may lie a room."""
     grown: float = 1.5
     """A frontier that shows this many times what it did when it was put off waits no longer."""
 
@@ -27,6 +29,8 @@ class PutOffConfig:
         """Refuse figures that are no share or no growth."""
         if not 0.0 <= self.share <= 1.0:
             raise TestbedError(f"put off share: {self.share}; must be from 0 to 1")
+        if not self.most >= 0.0:
+            raise TestbedError(f"put off most: {self.most}; must be 0 or more")
         if not self.grown >= 1.0:
             raise TestbedError(f"put off grown: {self.grown}; must be at least 1")
 
@@ -68,7 +72,7 @@ class PutOff:
             if key in waiting:
                 continue
             left -= item.gain
-            if left < 0.0:
+            if left < 0.0 or item.gain > self.config.most:
                 break
             waiting.add(key)
             self._waiting.append((item.frontier.middle, item.gain))

@@ -1,4 +1,8 @@
-"""Gets a robot that is blocked moving again: back off a little, then turn to the open side."""
+"""Gets a robot that is blocked moving again: back off a little, then turn to the open side.
+
+That is cheap, and enough where something passes by. Where it was not enough, the robot may stand in
+a pocket in which it can neither back off straight nor turn: the next recovery manoeuvres out of it.
+"""
 
 from dataclasses import dataclass
 
@@ -6,7 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mapping.geometry import Pose, wrap_to_pi
+from mapping.grid import OccupancyGrid
 from mapping.messages import Twist
+from nav.manoeuvre_drive import ManoeuvreDrive, ManoeuvreDriveConfig
+from nav.safety import SafetyConfig
 from nav.spot_turn import SpotTurn
 
 BACKING_PATIENCE = 1.5
@@ -31,18 +38,26 @@ class RecoveryConfig:
     """A recovery ends this long after backing off whatever came of it [s]."""
     view: float = 1.0
     """Obstacles farther than this do not count when looking for the open side [m]."""
+    manoeuvre: ManoeuvreDriveConfig = ManoeuvreDriveConfig()
+    """How to get out of where that does not help."""
+    manoeuvre_from: int = 2
+    """So many recoveries in a row it takes until the robot manoeuvres."""
 
 
 class Recovery:
     """One recovery: begun, commanded each period, over when ``command`` returns None."""
 
-    def __init__(self, config: RecoveryConfig | None = None) -> None:
+    def __init__(
+        self, config: RecoveryConfig | None = None, safety: SafetyConfig | None = None
+    ) -> None:
         self.config = config or RecoveryConfig()
         self._start: Pose | None = None
         self._elapsed = 0.0
         self._heading: float | None = None
         self._distance = self.config.back_off_distance
         self._turn = SpotTurn()
+        self._manoeuvre = ManoeuvreDrive(self.config.manoeuvre, safety)
+        self._may_manoeuvre = self._elsewhere = False
 
     @property
     def active(self) -> bool:
@@ -50,29 +65,47 @@ class Recovery:
         return self._start is not None
 
     def begin(self, pose: Pose, in_a_row: int = 1) -> None:
-        """Start backing off from here; the more recoveries in a row, the farther."""
+        """Start from here; the more recoveries in a row, the farther, and by other means."""
         config = self.config
         self._start, self._elapsed, self._heading = pose.copy(), 0.0, None
         farther = config.back_off_distance * 2.0 ** (in_a_row - 1)
         self._distance = min(farther, config.longest_back_off)
+        self._may_manoeuvre = in_a_row >= config.manoeuvre_from
+        self._elsewhere = in_a_row > config.manoeuvre_from
 
-    def command(self, pose: Pose, points: NDArray[np.float64], period: float) -> Twist | None:
+    def command(
+        self, pose: Pose, points: NDArray[np.float64], grid: OccupancyGrid, period: float
+    ) -> Twist | None:
         """The twist for the next period, or None when the recovery is over.
 
         Args:
             pose: Pose of base_footprint in the map frame ``(3,)``.
             points: Obstacle points in the map frame ``(n, 2)``.
+            grid: The map, for obstacles that the points do not show.
             period: Control period [s].
         """
-        config = self.config
         if self._start is None:
             return None
+        if self._may_manoeuvre:
+            self._may_manoeuvre = False
+            self._manoeuvre.begin(pose, points, grid, self._elsewhere)
+        if self._manoeuvre.active:
+            twist = self._manoeuvre.command(pose, points, grid, period)
+            if twist is None:
+                self._start = None
+            return twist
+        return self._back_off_and_turn(self._start, pose, points, period)
+
+    def _back_off_and_turn(
+        self, start: Pose, pose: Pose, points: NDArray[np.float64], period: float
+    ) -> Twist | None:
+        config = self.config
         self._elapsed += period
         backing_time = BACKING_PATIENCE * self._distance / config.back_off_speed
         if self._elapsed > config.time_limit + backing_time:
             self._start = None
             return None
-        backed = float(np.hypot(*(pose[:2] - self._start[:2])))
+        backed = float(np.hypot(*(pose[:2] - start[:2])))
         if self._heading is None and backed < self._distance and self._elapsed < backing_time:
             return Twist(linear_x=-config.back_off_speed)
         if self._heading is None:

@@ -59,8 +59,19 @@ def _map_what_takes_no_time(mapper: str, simulates: bool) -> None:
         config = EpisodeConfig(mapper=mapper, time_limit=20.0, people=1)
         episode = run_episode(config, plan=TINY_ROOM)
         result_of(episode, map_file_kb=None)
+        _manoeuvre_where_there_is_room()
     recording = Recording(log=sparse_log())
     run_replay(ReplayConfig(log=Path(recording.log.source), mapper=mapper), recording)
+
+
+def _manoeuvre_where_there_is_room() -> None:
+    """Plan the manoeuvre that a robot in a room without pockets never needs."""
+    from mapping.grid import OccupancyGrid
+    from nav.manoeuvre import ManoeuvreConfig, plan_manoeuvre
+    from nav.safety import SafetyConfig
+
+    nothing = np.zeros((0, 2))
+    plan_manoeuvre(np.zeros(3), nothing, OccupancyGrid(), ManoeuvreConfig(), SafetyConfig())
 
 
 def sparse_log() -> SensorLog:

@@ -160,7 +160,7 @@ def test_a_recovery_backs_off_then_turns_then_ends() -> None:
     recovery.begin(pose)
     kinds = []
     for _ in range(120):
-        twist = recovery.command(pose, points, 0.1)
+        twist = recovery.command(pose, points, OccupancyGrid(), 0.1)
         if twist is None:
             break
         kinds.append("back" if twist.linear_x < 0.0 else "turn")

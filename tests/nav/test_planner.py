@@ -10,7 +10,7 @@ from scipy.sparse.csgraph import dijkstra
 from nav.costmap import Costmap
 from nav.planner import CostField
 from nav.planner_kernels import line_cost
-from tests.nav.grids import costmap_of, grid_from_text, random_grid
+from tests.nav.grids import ROOM_WITH_UNKNOWN_EAST, costmap_of, grid_from_text, random_grid
 
 
 def scipy_costs(costmap: Costmap, start: tuple[int, int]) -> np.ndarray:
@@ -89,3 +89,14 @@ def test_a_search_with_a_bound_settles_what_is_cheaper_and_leaves_the_rest() -> 
 def test_nothing_is_reachable_from_outside_the_map() -> None:
     costmap = costmap_of(grid_from_text("\n".join(["." * 20] * 20)))
     assert not CostField.around(costmap, (-3.0, 0.5)).reaches((0.5, 0.5))
+
+
+def test_the_nearest_place_that_is_reached_is_the_point_itself_or_one_beside_it() -> None:
+    field = CostField.around(costmap_of(grid_from_text(ROOM_WITH_UNKNOWN_EAST)), (1.0, 1.0))
+    inside = np.array([0.7, 0.9])
+    assert np.array_equal(field.nearest_reached(inside, 0.0), inside)
+    beside = field.nearest_reached((0.08, 1.0), 0.2)
+    assert beside is not None and field.reaches(beside)
+    places = field.costmap.cell_to_world(np.argwhere(np.isfinite(field.cost_to_come)))
+    assert np.hypot(*(beside - (0.08, 1.0))) == np.hypot(*(places - (0.08, 1.0)).T).min()
+    assert field.nearest_reached((0.08, 1.0), 0.01) is None

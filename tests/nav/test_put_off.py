@@ -38,6 +38,11 @@ def test_what_waits_is_no_more_than_the_share_and_never_all(gains: list[float]) 
     assert not waiting or max(set(gains) - set(gains_of(now)), default=0.0) <= min(gains_of(now))
 
 
+def test_what_may_hide_a_room_does_not_wait_however_large_the_floor() -> None:
+    door, room = viewpoint_at(1.0, 1.2), viewpoint_at(9.0, 4.0)
+    assert PutOff().worth_now([door, room], 10.0 * FLOOR) == [door, room]
+
+
 def test_when_nothing_else_is_left_all_are_worth_going_to_and_stay_so() -> None:
     put_off, crumb = PutOff(), viewpoint_at(1.0, 0.5)
     assert put_off.worth_now([crumb, viewpoint_at(9.0, 4.0)], FLOOR) != [crumb]
@@ -49,10 +54,10 @@ def test_when_nothing_else_is_left_all_are_worth_going_to_and_stay_so() -> None:
 def test_what_was_put_off_waits_while_others_come_and_go() -> None:
     """Else two frontiers about as large would be put off by turns."""
     put_off = PutOff()
-    first, second, room = viewpoint_at(1.0, 1.9), viewpoint_at(5.0, 2.0), viewpoint_at(9.0, 4.0)
-    assert put_off.worth_now([first, second, room], FLOOR) == [second, room]
-    shrunk = viewpoint_at(5.0, 1.5)
-    assert put_off.worth_now([first, shrunk, room], FLOOR) == [shrunk, room]
+    first, second, room = viewpoint_at(1.0, 0.8), viewpoint_at(5.0, 0.9), viewpoint_at(9.0, 4.0)
+    assert put_off.worth_now([first, second, room], FLOOR / 2.0) == [second, room]
+    shrunk = viewpoint_at(5.0, 0.75)
+    assert put_off.worth_now([first, shrunk, room], FLOOR / 2.0) == [shrunk, room]
 
 
 def test_one_that_turned_out_larger_waits_no_longer() -> None:
@@ -76,7 +81,7 @@ def test_without_a_share_nothing_waits() -> None:
     assert PutOff(PutOffConfig(share=0.0)).worth_now(everything, FLOOR) == everything
 
 
-@pytest.mark.parametrize("wrong", [{"share": -0.1}, {"share": 1.1}, {"grown": 0.9}])
+@pytest.mark.parametrize("wrong", [{"share": -0.1}, {"share": 1.1}, {"grown": 0.9}, {"most": -1.0}])
 def test_figures_that_are_no_share_or_no_growth_are_refused(wrong: dict[str, float]) -> None:
     with pytest.raises(TestbedError):
         PutOffConfig(**wrong)
