@@ -96,7 +96,8 @@ def test_the_nearest_place_that_is_reached_is_the_point_itself_or_one_beside_it(
     inside = np.array([0.7, 0.9])
     assert np.array_equal(field.nearest_reached(inside, 0.0), inside)
     beside = field.nearest_reached((0.08, 1.0), 0.2)
-    assert beside is not None and field.reaches(beside)
+    assert beside is not None
+    assert field.reaches(beside)
     places = field.costmap.cell_to_world(np.argwhere(np.isfinite(field.cost_to_come)))
     assert np.hypot(*(beside - (0.08, 1.0))) == np.hypot(*(places - (0.08, 1.0)).T).min()
     assert field.nearest_reached((0.08, 1.0), 0.01) is None
