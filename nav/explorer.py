@@ -262,18 +262,17 @@ class FrontierExplorer:
     def _set_out(self, field: CostField, goal: np.ndarray, target: Viewpoint | None) -> None:
         if self._goal is None or float(np.hypot(*(self._goal - goal))) > self.config.arrived:
             self._driver.restart_headway()
-        if target is None or self._target is None or not target.is_near(self._target):
-            self._tries = 0
         if target is not None:
             self._note_goal(target)
         self._goal, self._target = goal.copy(), target
         self._driver.set_path(field.path_to(goal))
 
     def _note_goal(self, target: Viewpoint) -> None:
-        """Keep a goal that shows another frontier than the one before it; that one may grow."""
+        """Keep a goal that shows another frontier than the one before; for one, recoveries add up."""
         if self._last_chosen is None or not target.is_near(self._last_chosen):
             goal = ChosenGoal.at(self._driver.time, target.place, target.frontier.middle)
             self.goals = (*self.goals, goal)
+            self._tries = 0
         self._last_chosen = target
 
     def _start_recovery(self, in_vain: str = STUCK) -> None:
