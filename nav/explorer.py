@@ -268,7 +268,7 @@ class FrontierExplorer:
         self._driver.set_path(field.path_to(goal))
 
     def _note_goal(self, target: Viewpoint) -> None:
-        """Keep a goal that shows another frontier than the one before; for one, recoveries add up."""
+        """Keep a goal that shows another frontier than the last; for one, recoveries add up."""
         if self._last_chosen is None or not target.is_near(self._last_chosen):
             goal = ChosenGoal.at(self._driver.time, target.place, target.frontier.middle)
             self.goals = (*self.goals, goal)
