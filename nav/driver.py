@@ -23,6 +23,9 @@ from nav.safety import Safety
 from nav.scan_points import ScanPoints, ScanView
 from nav.yielding import Yielding
 
+POINTS_AHEAD = 3
+"""Points of the path, 5 cm apart, from the robot to where it looks for what stops it."""
+
 
 class Driver:
     """The parts that turn a path into twists, and what they remember."""
@@ -67,6 +70,12 @@ class Driver:
     def path_ahead(self) -> NDArray[np.float64]:
         """The part of the path still to drive ``(n, 2)``."""
         return self._follower.path_ahead
+
+    @property
+    def place_ahead(self) -> NDArray[np.float64]:
+        """A point of the path 0.15 m or so ahead ``(2,)``; where the robot is, without a path."""
+        path = self._follower.path_ahead
+        return path[min(POINTS_AHEAD, len(path) - 1)] if len(path) else self._pose[:2]
 
     @property
     def newest_view(self) -> ScanView | None:

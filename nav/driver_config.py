@@ -26,7 +26,8 @@ class DriverConfig:
     """Returns up to this far are held against the path [m]."""
     path_clearance: float = 0.10
     """A return this close to the path ahead blocks it [m]."""
-    recoveries_in_a_row: int = 8
-    """Recoveries without getting on in between after which the robot is stuck."""
+    recoveries_in_a_row: int = 10
+    """Recoveries without getting on in between after which the robot is stuck: enough to try a
+    frontier in three ways, three recoveries each."""
     got_on: float = 1.0
     """Distance from the last recovery's place at which the robot has got on [m]."""

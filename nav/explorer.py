@@ -2,7 +2,7 @@
 
 Each period: follow the path, under the safety layer's eye. Now and then, or when something calls
 for it, look at the map again and decide anew. A robot that makes no headway recovers; a frontier
-that cannot be had is given up with a reason, and tried once more at the end.
+that cannot be had is given up with a reason, and tried again at the end, by another way if any.
 """
 
 import math
@@ -17,7 +17,6 @@ from nav.costmap import Costmap
 from nav.decision import choose
 from nav.driver import Driver
 from nav.explorer_config import ExplorerConfig
-from nav.former_walls import FormerWalls
 from nav.frontier import Frontier, find_frontiers
 from nav.given_up import GivenUp
 from nav.loyalty import Loyalty
@@ -31,11 +30,10 @@ from nav.navigator import (
     DroppedFrontier,
     Plan,
 )
+from nav.place_memory import PlaceMemory
 from nav.planner import CostField
 from nav.put_off import PutOff
-from nav.returns import Returns
 from nav.viewpoint import Viewpoint, ViewpointFinder, gain_at
-from nav.visited_places import VisitedPlaces
 
 NOTHING_NEW = "its viewpoints showed nothing new"
 NO_HEADWAY = "no headway on the way there"
@@ -64,9 +62,7 @@ class FrontierExplorer:
         self._driver = Driver(self.config.driver)
         self._given_up = GivenUp()
         self._finder = ViewpointFinder(self.config.viewpoint)
-        self._visited = VisitedPlaces(self.config.visited_places)
-        self._former_walls = FormerWalls(self.config.former_walls)
-        self._returns = Returns()
+        self._places = PlaceMemory(self.config.visited_places, self.config.former_walls)
         self._put_off = PutOff(self.config.put_off)
         self._loyalty = Loyalty()
         self._task = Task.EXPLORE
@@ -105,9 +101,7 @@ class FrontierExplorer:
         if driver.jump is not None:
             self._note_jump(driver.jump, pose_map)
         if driver.has_new_scan:
-            self._visited.note(self._costmap, pose_map[:2])
-            if driver.newest_view is not None:
-                self._returns.note(self._costmap, driver.newest_view)
+            self._places.note_scan(self._costmap, pose_map[:2], driver.newest_view)
         if self.status != RUNNING or driver.is_looking:
             return driver.stand()
         if driver.is_recovering:
@@ -134,9 +128,7 @@ class FrontierExplorer:
         self._shift += shift_at(jump, compose(inverse(jump), pose))
         if self._shift > self.config.memory_shift:
             self._shift = 0.0
-            self._visited = VisitedPlaces(self.config.visited_places)
-            self._former_walls = FormerWalls(self.config.former_walls)
-            self._returns = Returns()
+            self._places.forget()
 
     def _must_decide(self, grid: OccupancyGrid, pose: Pose) -> bool:
         """Whether the way on is in question."""
@@ -187,12 +179,11 @@ class FrontierExplorer:
 
     def _glance(self, grid: OccupancyGrid, pose: Pose) -> None:
         self._costmap.glance(grid, pose[:2], self._changed_reach())
-        self._returns.mark(self._costmap)
+        self._places.returns.mark(self._costmap)
 
     def _look(self, grid: OccupancyGrid, pose: Pose) -> None:
         self._costmap.refresh(grid, pose[:2], self._changed_reach())
-        self._former_walls.note(self._costmap, pose[:2])
-        self._returns.mark(self._costmap)  # after that: they are no walls that drift could move
+        self._places.mark(self._costmap, pose[:2])
         self._looked_at = self._driver.time
 
     def _changed_reach(self) -> float:
@@ -207,24 +198,35 @@ class FrontierExplorer:
         self._look(grid, pose)
         if self._task is Task.EXPLORE:
             target, field = self._best_viewpoint(pose)
-            if target is None and self._given_up.second_chance():
+            if target is None and self._given_up.another_chance(2):
+                target, field = self._best_viewpoint(pose)
+            if target is None and self._reopen(grid, pose) and self._given_up.another_chance(3):
                 target, field = self._best_viewpoint(pose)
             if target is not None:
                 self._set_out(field, target.place, target)
                 return
-            if self._is_shut_in(field):
+            body = np.pi * self.config.costmap.lethal_clearance**2
+            if field.reached_area < body:  # hemmed in, or seeing nothing at all
                 self._finish(UNREACHABLE_START)
                 return
             self._task = Task.GO_HOME
-        self._go_home(pose)
+        self._go_home(grid, pose)
+
+    def _reopen(self, grid: OccupancyGrid, pose: Pose) -> bool:
+        """Plan through gaps that were too narrow once more; False if there is none."""
+        if not self._places.gaps.reopen():
+            return False
+        self._costmap.refresh(grid)
+        self._places.mark(self._costmap, pose[:2])
+        return True
 
     def _best_viewpoint(self, pose: Pose) -> tuple[Viewpoint | None, CostField]:
         """Where to go next, and the cost field from here."""
         config = self.config
-        self._frontiers = find_frontiers(self._costmap, config.frontier, self._former_walls)
+        self._frontiers = find_frontiers(self._costmap, config.frontier, self._places.former_walls)
         open_ones = [item for item in self._frontiers if not self._given_up.holds(item)]
         field = CostField.around(self._costmap, pose[:2])
-        visited = self._visited.on(self._costmap)
+        visited = self._places.visited.on(self._costmap)
         viewpoints = self._finder.find(field, open_ones, visited, pose[:2])
         area, loyalty = self._costmap.free_area, self._loyalty
         worth_now = self._put_off.worth_now(viewpoints, area)
@@ -242,16 +244,13 @@ class FrontierExplorer:
                 seen = self._finder.has_view(frontier)
                 self._given_up.give_up(frontier, NOT_WORTH_IT if seen else NO_VIEW)
 
-    def _is_shut_in(self, field: CostField) -> bool:
-        """Whether the robot knows of no room to move in: hemmed in, or seeing nothing at all."""
-        reachable = np.isfinite(field.cost_to_come).sum() * self._costmap.resolution**2
-        body = np.pi * self.config.costmap.lethal_clearance**2
-        return bool(reachable < body)
-
-    def _go_home(self, pose: Pose) -> None:
+    def _go_home(self, grid: OccupancyGrid, pose: Pose) -> None:
         assert self._home is not None
         field = CostField.around(self._costmap, pose[:2])
         place = field.nearest_reached(self._home[:2], self.config.home_within)
+        if place is None and self._reopen(grid, pose):
+            field = CostField.around(self._costmap, pose[:2])
+            place = field.nearest_reached(self._home[:2], self.config.home_within)
         if place is not None:
             self._set_out(field, place, None)
         elif float(np.hypot(*(self._home - pose)[:2])) < 2.0 * self.config.home_tolerance:
@@ -276,7 +275,7 @@ class FrontierExplorer:
         self._last_chosen = target
 
     def _start_recovery(self, in_vain: str = STUCK) -> None:
-        """Recover; give the frontier up after too many, the robot after far too many.
+        """Recover; after too many look for another way, and give the robot up after far too many.
 
         ``in_vain`` is the status when recovering has not helped.
         """
@@ -284,9 +283,12 @@ class FrontierExplorer:
         if not self._driver.may_recover():
             self._finish(in_vain)
             return
-        if self._target is not None and self._tries > self.config.recoveries_per_goal:
-            self._given_up.give_up(self._target.frontier, NO_HEADWAY)
-            self._target = None
+        if self._tries > self.config.recoveries_per_goal:
+            self._places.gaps.close(self._driver.place_ahead)
+            self._tries = 0
+            if self._target is not None:
+                self._given_up.give_up(self._target.frontier, NO_HEADWAY)
+                self._target = None
         self._driver.begin_recovery()
 
     def _forget_goal(self) -> None:

@@ -1,4 +1,4 @@
-"""Keeps the frontiers that were given up, and why, and gives each a second chance at the end."""
+"""Keeps the frontiers that were given up, and why, and gives each another chance at the end."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -30,7 +30,7 @@ class GivenUp:
         self._chances = 1
 
     def give_up(self, frontier: Frontier, reason: str) -> None:
-        """Leave a frontier alone, for now or, after its second chance, for good."""
+        """Leave a frontier alone, for now or, after its last chance, for good."""
         self._add(frontier, reason, GIVEN_UP)
 
     def disappoint(self, frontier: Frontier, reason: str) -> None:
@@ -42,11 +42,11 @@ class GivenUp:
         record = self._find(frontier)
         return record is not None and record.times >= self._chances
 
-    def second_chance(self) -> bool:
-        """Let every frontier be tried once more; False when that was granted or none waits."""
-        if self._chances > 1 or not self._records:
+    def another_chance(self, most: int) -> bool:
+        """Let every frontier be tried once more; False after ``most`` tries or when none waits."""
+        if self._chances >= most or not self._records:
             return False
-        self._chances = 2
+        self._chances += 1
         return True
 
     def left_over(

@@ -64,6 +64,11 @@ class CostField:
         """Whether a way to the point (x, y) is known."""
         return bool(np.isfinite(self.cost_at(point)))
 
+    @property
+    def reached_area(self) -> float:
+        """Area of the cells that a way is known to [m2]."""
+        return float(np.isfinite(self.cost_to_come).sum() * self.costmap.resolution**2)
+
     def nearest_reached(self, point: ArrayLike, within: float) -> NDArray[np.float64] | None:
         """The place nearest to a point (x, y) that a way is known to; None if none is so near [m].
 

@@ -1,21 +1,100 @@
-"""A robot that gets nowhere gives the frontier up, says why, and is not stuck for it."""
+"""A robot that gets nowhere gives the frontier up, says why, and looks for another way."""
+
+from collections.abc import Callable
 
 import numpy as np
 
+from mapping.geometry import Pose, compose
+from mapping.grid import OccupancyGrid
+from nav.closed_gaps import RADIUS, ClosedGaps
 from nav.explorer import NO_HEADWAY, FrontierExplorer
 from nav.navigator import COMPLETE, RUNNING
-from tests.nav.grids import ROOM_WITH_UNKNOWN_EAST, grid_from_text
+from nav.planner import CostField
+from tests.nav.grids import ROOM_WITH_UNKNOWN_EAST, costmap_of, grid_from_text
 
-MOST_PERIODS = 3000
+MOST_PERIODS, PERIOD = 6000, 0.1
+
+TWO_WAYS = "\n".join(
+    ["#" * 100]
+    + ["#" + "." * 39 + "#" + "." * 39 + "?" * 20] * 13
+    + ["#" + "." * 79 + "?" * 20] * 6
+    + ["#" + "." * 39 + "#" + "." * 39 + "?" * 20] * 23
+    + ["#" + "." * 79 + "?" * 20] * 12
+    + ["#" + "." * 39 + "#" + "." * 39 + "?" * 20] * 10
+    + ["#" * 100]
+)
+"""Two rooms of 2 m with a door of 0.3 m and one of 0.6 m between them; then it is unknown."""
+
+
+def drive(
+    explorer: FrontierExplorer, grid: OccupancyGrid, pose: Pose, may_stand: Callable[[Pose], bool]
+) -> list[Pose]:
+    """Drive as commanded wherever the robot may stand, until it is done or for ten minutes."""
+    track = [pose]
+    for _ in range(MOST_PERIODS):
+        twist = explorer.command(grid, pose, None)
+        if explorer.status != RUNNING:
+            break
+        turned = np.array([0.0, 0.0, twist.angular_z * PERIOD])
+        moved = compose(compose(pose, turned), np.array([twist.linear_x * PERIOD, 0.0, 0.0]))
+        pose = moved if may_stand(moved) else pose
+        track.append(pose)
+    return track
 
 
 def test_recoveries_on_the_way_to_one_frontier_add_up_until_it_is_given_up() -> None:
     """The wheels turn in vain: whatever it commands, it stays where it began."""
-    explorer, grid = FrontierExplorer(), grid_from_text(ROOM_WITH_UNKNOWN_EAST)
-    pose = np.array([0.8, 1.0, 0.0])
-    for _ in range(MOST_PERIODS):
-        explorer.command(grid, pose, None)
-        if explorer.status != RUNNING:
-            break
+    explorer = FrontierExplorer()
+    drive(
+        explorer,
+        grid_from_text(ROOM_WITH_UNKNOWN_EAST),
+        np.array([0.8, 1.0, 0.0]),
+        lambda pose: False,
+    )
     assert explorer.status == COMPLETE, "it stands where it began: at home"
     assert {dropped.reason for dropped in explorer.dropped_frontiers} == {NO_HEADWAY}
+
+
+def test_a_door_that_lets_nobody_through_is_closed_and_the_other_one_taken() -> None:
+    """The nearer door has a pane that neither map nor lidar shows."""
+    explorer, grid = FrontierExplorer(), grid_from_text(TWO_WAYS)
+    track = drive(
+        explorer,
+        grid,
+        np.array([1.0, 2.4, 0.0]),
+        lambda pose: not (abs(pose[0] - 2.02) < 0.15 and pose[1] > 1.6),
+    )
+    assert max(pose[0] for pose in track) > 2.5
+    assert explorer.status != RUNNING
+
+
+def test_no_way_leads_through_a_closed_gap_until_it_is_opened_again() -> None:
+    grid, gaps = grid_from_text(TWO_WAYS), ClosedGaps()
+    assert not gaps.reopen()
+    costmap = costmap_of(grid)
+    beyond = (3.0, 2.4)
+    direct = CostField.around(costmap, (1.0, 2.4)).cost_at(beyond)
+    for y in (2.3, 2.4, 2.5):
+        gaps.close(np.array([2.0, y]))
+    gaps.mark(costmap)
+    assert CostField.around(costmap, (1.0, 2.4)).cost_at(beyond) > direct + 1.0
+    for y in (0.55, 0.8, 1.05):
+        gaps.close(np.array([2.0, y]))
+    gaps.mark(costmap)
+    assert not CostField.around(costmap, (1.0, 2.4)).reaches(beyond)
+    assert gaps.reopen()
+    costmap.refresh(grid)
+    gaps.mark(costmap)
+    assert CostField.around(costmap, (1.0, 2.4)).cost_at(beyond) == direct
+
+
+def test_gaps_at_the_edge_of_the_map_and_beyond_it_are_no_trouble() -> None:
+    costmap, gaps = costmap_of(grid_from_text(TWO_WAYS)), ClosedGaps()
+    closed = int(np.isinf(costmap.cost).sum())
+    gaps.close(np.array([-1.0, 99.0]))
+    gaps.mark(costmap)
+    assert np.isinf(costmap.cost).sum() == closed
+    gaps.close(np.array([2.5, 1.6]))
+    gaps.mark(costmap)
+    added = (np.isinf(costmap.cost).sum() - closed) * costmap.resolution**2
+    assert abs(added - np.pi * RADIUS**2) < 0.3 * np.pi * RADIUS**2
