@@ -46,7 +46,8 @@ class ExplorerConfig:
     """Where the start itself is closer to a wall than a path may be, the robot goes to the nearest
     place up to so far from it [m]."""
     recoveries_per_goal: int = 2
-    """Recoveries on the way to a frontier after which it is given up."""
+    """Recoveries on the way to a frontier, or home, after which the gap that stopped the robot is
+    closed, and the frontier given up for now."""
     memory_shift: float = 0.15
     """When redrawn maps have moved the robot this far in all [m], former walls and visited places
     are forgotten: they are believed to lie within 0.2 m of where they were."""

@@ -11,7 +11,7 @@ GROWTH = 2.0
 MOST = 64.0
 """No more than that."""
 NEW_AREA = 0.5
-"""The robot has got on when it knows so much more floor than at its last change of mind [m2]."""
+"""The robot has got on when it knows so much more floor than when it last got on [m2]."""
 
 
 class Loyalty:

@@ -6,6 +6,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from nav.cell_window_kernels import cells_around
 from nav.outline import Rectangle
 
 FORWARD, BACKWARD, LEFT, RIGHT = 0, 1, 2, 3
@@ -248,11 +249,10 @@ def occupied_near(
     """
     left, bottom, resolution = lattice
     rows, columns = log_odds.shape
-    first_row = max(int(np.floor((y - reach - bottom) / resolution)), 0)
-    end_row = min(int(np.floor((y + reach - bottom) / resolution)) + 1, rows)
-    first_column = max(int(np.floor((x - reach - left) / resolution)), 0)
-    end_column = min(int(np.floor((x + reach - left) / resolution)) + 1, columns)
-    points = np.empty((max(end_row - first_row, 0) * max(end_column - first_column, 0), 2))
+    first_row, end_row, first_column, end_column = cells_around(
+        log_odds.shape, lattice, x, y, reach
+    )
+    points = np.empty(((end_row - first_row) * (end_column - first_column), 2))
     count = 0
     for i in range(first_row, end_row):
         for j in range(first_column, end_column):

@@ -4,6 +4,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from nav.cell_window_kernels import cells_around
 from nav.outline import Rectangle
 
 SHARES = (1.0, 0.75, 0.5, 0.25)
@@ -95,12 +96,10 @@ def _too_near_to_see(
     x = pose[0] + blind[0] * np.cos(pose[2])
     y = pose[1] + blind[0] * np.sin(pose[2])
     radius = blind[1] + resolution
-    rows, columns = log_odds.shape
-    first_row = max(int(np.floor((y - radius - bottom) / resolution)), 0)
-    end_row = min(int(np.floor((y + radius - bottom) / resolution)) + 1, rows)
-    first_column = max(int(np.floor((x - radius - left) / resolution)), 0)
-    end_column = min(int(np.floor((x + radius - left) / resolution)) + 1, columns)
-    points = np.empty((max(end_row - first_row, 0) * max(end_column - first_column, 0), 2))
+    first_row, end_row, first_column, end_column = cells_around(
+        log_odds.shape, lattice, x, y, radius
+    )
+    points = np.empty(((end_row - first_row) * (end_column - first_column), 2))
     count = 0
     for i in range(first_row, end_row):
         for j in range(first_column, end_column):

@@ -23,3 +23,5 @@ def test_the_shares_of_a_loop_make_its_wall_time() -> None:
     spent = loop.simulation_ms + loop.mapping_ms + loop.navigation_ms
     assert spent == pytest.approx(1e3 * episode.wall_time / episode.sim_time)
     assert min(loop.simulation_ms, loop.mapping_ms, loop.navigation_ms) > 0.0
+    assert loop.decision_ms is not None
+    assert 0.0 < loop.decision_ms < 1e3 * episode.navigator_seconds.sum()
