@@ -50,8 +50,8 @@ class EpisodeConfig:
     mapper: str = "graph"
     """graph, scan_match, gmapping, ogm or occgridmapp."""
     navigator: str = "frontier"
-    """frontier; nearest, explore_lite or gain_cost: the same with a rule to compare with; reactive;
-    or waypoints: through given places."""
+    """frontier; tour, nearest, explore_lite or gain_cost: the same with a rule to compare with;
+    reactive; or waypoints: through given places."""
     waypoints: str = ""
     """Places for the navigator waypoints: 'x,y x,y ...' in metres, or the name of a route of the
     world, such as there_and_back in lim_hallway."""

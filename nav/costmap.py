@@ -4,6 +4,7 @@ The map is drawn at 1 cm but planned on at 5 cm. Clearance is still measured to 
 that a 0.30 m door does not close because a coarse cell was rounded the wrong way.
 """
 
+import copy
 import math
 from dataclasses import dataclass
 
@@ -68,6 +69,16 @@ class Costmap:
             self._pool(grid, self._window(np.asarray(center, dtype=np.float64), reach))
         else:
             self.refresh(grid)
+
+    def with_states_of(self, grid: OccupancyGrid) -> "Costmap":
+        """The same with the map's own states everywhere, whatever was marked on this one's.
+
+        Clearance and cost are shared, not copied.
+        """
+        other = copy.copy(self)
+        other.states = np.empty_like(self.states)
+        other._pool(grid, (0, self.states.shape[0], 0, self.states.shape[1]))
+        return other
 
     def refresh(
         self, grid: OccupancyGrid, center: ArrayLike | None = None, reach: float = np.inf

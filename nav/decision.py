@@ -1,4 +1,8 @@
-"""Turns viewpoints into the one to drive to next: the first of the tour that sees most soonest."""
+"""Turns viewpoints into the one to drive to next: the one that shows most for the time it takes.
+
+While there are rooms to find, a plan over what is known now is worth little: the next view changes
+it. The rule ``tour`` makes such a plan all the same, to compare with; so do others' rules.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,31 +17,25 @@ from nav.planner import CostField
 from nav.tour import best_order
 from nav.viewpoint import Viewpoint
 
-TOUR = "tour"
-RULES = (TOUR, *GREEDY_RULES)
+GAIN_RATE, TOUR = "gain_rate", "tour"
+RULES = (GAIN_RATE, TOUR, *GREEDY_RULES)
 
-LEAST_TIME = 1.5
-"""However loyal, no first leg counts for less [s]: half a settling time."""
+LEAST_SHARE = 0.5
+"""However loyal, no way counts for less than this share of the settling time."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class DecisionConfig:
-    """What a viewpoint's worth is weighed by."""
+class TourConfig:
+    """What the viewpoints of a tour are weighed by."""
 
-    rule: str = TOUR
-    """``tour``, or one of GREEDY_RULES, to compare with; the rest is for ``tour`` alone."""
-    speed: float = 0.2
-    """Speed that costs are turned into time with [m/s]."""
-    turn_speed: float = 1.2
-    """Turn rate that the first turn is turned into time with [rad/s]."""
     settling_time: float = 3.0
-    """Time every viewpoint costs, however near: turning, braking, looking [s]."""
-    gain_cap: float = 4.0
+    """Time every viewpoint costs, however near [s]."""
+    loyalty: float = 4.0
+    """Time by which another first leg must be better to be turned to [s]."""
+    most_gain: float = 4.0
     """Area beyond which more does not count [m2]: guesses about far space are mostly wrong."""
     base_worth: float = 0.5
     """Worth of settling a frontier at all [m2]: what is left behind costs a way of its own."""
-    loyalty: float = 4.0
-    """Time by which another first leg must be better to be turned to [s]: no oscillation."""
     end_share: float = 1.0
     """What the end of the tour counts, as a share of all that is seen on it, beside when each part
     is seen: what would be left behind is taken along where that shortens the whole."""
@@ -45,15 +43,40 @@ class DecisionConfig:
     """At most so many viewpoints are put in order, the best by worth per time."""
 
     def __post_init__(self) -> None:
+        """Refuse figures that make no tour."""
+        if not self.settling_time > 0.0:
+            raise TestbedError(f"tour settling_time: {self.settling_time}; must be above 0")
+        if not self.end_share >= 0.0:
+            raise TestbedError(f"tour end_share: {self.end_share}; must be 0 or more")
+        if self.toured < 1:
+            raise TestbedError(f"tour toured: {self.toured}; must be at least 1")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DecisionConfig:
+    """What a viewpoint's worth is weighed by."""
+
+    rule: str = GAIN_RATE
+    """``gain_rate``; or, to compare with, ``tour`` or one of GREEDY_RULES."""
+    speed: float = 0.2
+    """Speed that costs are turned into time with [m/s]."""
+    turn_speed: float = 1.2
+    """Turn rate that the first turn is turned into time with [rad/s]."""
+    settling_time: float = 1.0
+    """Time that a view costs, however near: turning, braking, looking [s]."""
+    loyalty: float = 1.5
+    """Time by which another viewpoint must be better to be turned to [s]: no oscillation."""
+    most_gain: float = 6.0
+    """Area beyond which more does not count [m2]: guesses about far space are mostly wrong."""
+    tour: TourConfig = TourConfig()
+
+    def __post_init__(self) -> None:
         """Refuse figures that decide nothing."""
-        if not (self.speed > 0.0 and self.turn_speed > 0.0 and self.settling_time > 0.0):
-            raise TestbedError("decision: speed, turn_speed and settling_time must be above 0")
+        for name in ("speed", "turn_speed", "settling_time", "most_gain"):
+            if not getattr(self, name) > 0.0:
+                raise TestbedError(f"decision {name}: {getattr(self, name)}; must be above 0")
         if self.rule not in RULES:
             raise TestbedError(f"decision rule: {self.rule!r}; must be one of {', '.join(RULES)}")
-        if not self.end_share >= 0.0:
-            raise TestbedError(f"decision end_share: {self.end_share}; must be 0 or more")
-        if self.toured < 1:
-            raise TestbedError(f"decision toured: {self.toured}; must be at least 1")
 
 
 def choose(
@@ -66,53 +89,75 @@ def choose(
 ) -> Viewpoint | None:
     """The viewpoint that the rule chooses; None of none.
 
-    The rule ``tour`` takes the first of the best tour over one viewpoint of each frontier.
-
     Args:
         viewpoints: Candidates, any number of a frontier.
         field: The cost field that their costs are from.
         pose: Where the robot is ``(3,)``.
         current: Where it is going, if anywhere; favoured.
         config: What is weighed how.
-        loyalty: How many times the loyal one ``config`` asks to be to the current viewpoint.
+        loyalty: How many times as loyal to the current viewpoint as ``config`` asks to be.
     """
-    if config.rule != TOUR:
+    if config.rule in GREEDY_RULES:
         return GREEDY_RULES[config.rule](viewpoints, field, pose)
-    best: dict[int, tuple[float, Viewpoint, float]] = {}
+    tour = config.tour
+    if config.rule == TOUR:
+        times = _times(
+            viewpoints, pose, current, config, tour.settling_time, loyalty * tour.loyalty
+        )
+        return _first_of_tour(viewpoints, times, field, config)
+    times = _times(
+        viewpoints, pose, current, config, config.settling_time, loyalty * config.loyalty
+    )
+    rates = [
+        min(viewpoint.gain, config.most_gain) / time
+        for viewpoint, time in zip(viewpoints, times, strict=True)
+    ]
+    return viewpoints[int(np.argmax(rates))] if rates else None
+
+
+def _times(
+    viewpoints: Sequence[Viewpoint],
+    pose: Pose,
+    current: Viewpoint | None,
+    config: DecisionConfig,
+    settling: float,
+    loyal: float,
+) -> list[float]:
+    """Time to each viewpoint [s], less what loyalty to the current frontier is worth [s]."""
+    times = []
     for viewpoint in viewpoints:
-        time = _first_leg(viewpoint, pose, current, config, loyalty)
-        ratio = _worth(viewpoint, config) / time
+        offset = viewpoint.place - pose[:2]
+        turn = abs(float(wrap_to_pi(np.arctan2(offset[1], offset[0]) - pose[2])))
+        time = settling + viewpoint.cost / config.speed + turn / config.turn_speed
+        if current is not None and viewpoint.is_near(current):
+            time = max(time - loyal, LEAST_SHARE * settling)
+        times.append(time)
+    return times
+
+
+def _first_of_tour(
+    viewpoints: Sequence[Viewpoint], times: list[float], field: CostField, config: DecisionConfig
+) -> Viewpoint | None:
+    """The first of the best tour over one viewpoint of each frontier."""
+    tour = config.tour
+    best: dict[int, tuple[float, Viewpoint, float]] = {}
+    for viewpoint, time in zip(viewpoints, times, strict=True):
+        ratio = _worth(viewpoint, tour) / time
         key = id(viewpoint.frontier)
         if key not in best or ratio > best[key][0]:
             best[key] = (ratio, viewpoint, time)
     if not best:
         return None
-    leading = sorted(best.values(), key=lambda entry: -entry[0])[: config.toured]
+    leading = sorted(best.values(), key=lambda entry: -entry[0])[: tour.toured]
     chosen = [viewpoint for _, viewpoint, _ in leading]
     first_legs = np.array([time for _, _, time in leading])
-    weights = np.array([_worth(viewpoint, config) for viewpoint in chosen])
-    legs = _legs(chosen, field) / config.speed + config.settling_time
-    return chosen[int(best_order(first_legs, legs, weights, config.end_share)[0])]
+    weights = np.array([_worth(viewpoint, tour) for viewpoint in chosen])
+    legs = _legs(chosen, field) / config.speed + tour.settling_time
+    return chosen[int(best_order(first_legs, legs, weights, tour.end_share)[0])]
 
 
-def _worth(viewpoint: Viewpoint, config: DecisionConfig) -> float:
-    return config.base_worth + min(viewpoint.gain, config.gain_cap)
-
-
-def _first_leg(
-    viewpoint: Viewpoint,
-    pose: Pose,
-    current: Viewpoint | None,
-    config: DecisionConfig,
-    loyalty: float,
-) -> float:
-    """Time to a viewpoint from here [s], less what loyalty to the current frontier is worth."""
-    offset = viewpoint.place - pose[:2]
-    turn = abs(float(wrap_to_pi(np.arctan2(offset[1], offset[0]) - pose[2])))
-    time = config.settling_time + viewpoint.cost / config.speed + turn / config.turn_speed
-    if current is not None and viewpoint.is_near(current):
-        time = max(time - loyalty * config.loyalty, LEAST_TIME)
-    return time
+def _worth(viewpoint: Viewpoint, tour: TourConfig) -> float:
+    return tour.base_worth + min(viewpoint.gain, tour.most_gain)
 
 
 def _legs(viewpoints: Sequence[Viewpoint], field: CostField) -> NDArray[np.float64]:

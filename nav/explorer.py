@@ -17,7 +17,6 @@ from nav.costmap import Costmap
 from nav.decision import choose
 from nav.driver import Driver
 from nav.explorer_config import ExplorerConfig
-from nav.frontier import Frontier, find_frontiers
 from nav.given_up import GivenUp
 from nav.loyalty import Loyalty
 from nav.map_jump import shift_at
@@ -30,15 +29,13 @@ from nav.navigator import (
     DroppedFrontier,
     Plan,
 )
+from nav.outlook import Outlook
 from nav.place_memory import PlaceMemory
 from nav.planner import CostField
-from nav.put_off import PutOff
-from nav.viewpoint import Viewpoint, ViewpointFinder, gain_at
+from nav.viewpoint import Viewpoint, gain_at
 
 NOTHING_NEW = "its viewpoints showed nothing new"
 NO_HEADWAY = "no headway on the way there"
-NO_VIEW = "no place in reach that was not tried sees it"
-NOT_WORTH_IT = "too little to see for the way there"
 NO_TIME_LEFT = "not visited before the run ended"
 """Why a frontier is given up."""
 
@@ -61,16 +58,14 @@ class FrontierExplorer:
         self._costmap = Costmap(self.config.costmap)
         self._driver = Driver(self.config.driver)
         self._given_up = GivenUp()
-        self._finder = ViewpointFinder(self.config.viewpoint)
+        self._outlook = Outlook(self.config)
         self._places = PlaceMemory(self.config.visited_places, self.config.former_walls)
-        self._put_off = PutOff(self.config.put_off)
         self._loyalty = Loyalty()
         self._task = Task.EXPLORE
         self._home: Pose | None = None
         self._target: Viewpoint | None = None
         self._last_chosen: Viewpoint | None = None
         self._goal: np.ndarray | None = None
-        self._frontiers: list[Frontier] = []
         self._tries = 0
         self._shift = 0.0
         self._decided_at = self._glanced_at = self._looked_at = -np.inf
@@ -78,7 +73,7 @@ class FrontierExplorer:
     @property
     def plan(self) -> Plan:
         """The way ahead, the goal and the frontiers of the last decision."""
-        middles = [frontier.middle for frontier in self._frontiers]
+        middles = [frontier.middle for frontier in self._outlook.frontiers]
         return Plan(
             path=self._driver.path_ahead if self._goal is not None else np.zeros((0, 2)),
             goal=self._goal,
@@ -89,7 +84,7 @@ class FrontierExplorer:
     def dropped_frontiers(self) -> tuple[DroppedFrontier, ...]:
         """The frontiers of the last decision that were given up; of a run cut short, all."""
         return self._given_up.left_over(
-            self._frontiers, NO_TIME_LEFT if self.status == RUNNING else None
+            self._outlook.frontiers, NO_TIME_LEFT if self.status == RUNNING else None
         )
 
     def command(self, grid: OccupancyGrid, pose_map: Pose, scan: LaserScan | None) -> Twist:
@@ -197,11 +192,11 @@ class FrontierExplorer:
         self._decided_at = self._glanced_at = self._driver.time
         self._look(grid, pose)
         if self._task is Task.EXPLORE:
-            target, field = self._best_viewpoint(pose)
+            target, field = self._best_viewpoint(grid, pose)
             if target is None and self._given_up.another_chance(2):
-                target, field = self._best_viewpoint(pose)
+                target, field = self._best_viewpoint(grid, pose)
             if target is None and self._reopen(grid, pose) and self._given_up.another_chance(3):
-                target, field = self._best_viewpoint(pose)
+                target, field = self._best_viewpoint(grid, pose)
             if target is not None:
                 self._set_out(field, target.place, target)
                 return
@@ -220,29 +215,18 @@ class FrontierExplorer:
         self._places.mark(self._costmap, pose[:2])
         return True
 
-    def _best_viewpoint(self, pose: Pose) -> tuple[Viewpoint | None, CostField]:
+    def _best_viewpoint(
+        self, grid: OccupancyGrid, pose: Pose
+    ) -> tuple[Viewpoint | None, CostField]:
         """Where to go next, and the cost field from here."""
-        config = self.config
-        self._frontiers = find_frontiers(self._costmap, config.frontier, self._places.former_walls)
-        open_ones = [item for item in self._frontiers if not self._given_up.holds(item)]
+        config, loyalty = self.config, self._loyalty
         field = CostField.around(self._costmap, pose[:2])
-        visited = self._places.visited.on(self._costmap)
-        viewpoints = self._finder.find(field, open_ones, visited, pose[:2])
-        area, loyalty = self._costmap.free_area, self._loyalty
-        worth_now = self._put_off.worth_now(viewpoints, area)
+        worth_now = self._outlook.viewpoints(field, grid, self._places, self._given_up, pose[:2])
         best = choose(worth_now, field, pose, self._target, config.decision, loyalty.times)
-        loyalty.note(self._target, best, area)
+        loyalty.note(self._target, best, self._costmap.free_area)
         if best is None:
-            self._note_left_over(open_ones)
+            self._outlook.note_left_over(self._given_up)
         return best, field
-
-    def _note_left_over(self, frontiers: list[Frontier]) -> None:
-        """Record every frontier that hides something, and why the robot does not go there."""
-        for frontier in frontiers:
-            gain = gain_at(self._costmap, frontier.middle, self.config.viewpoint)
-            if gain >= self.config.viewpoint.min_gain:
-                seen = self._finder.has_view(frontier)
-                self._given_up.give_up(frontier, NOT_WORTH_IT if seen else NO_VIEW)
 
     def _go_home(self, grid: OccupancyGrid, pose: Pose) -> None:
         assert self._home is not None

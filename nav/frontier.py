@@ -20,6 +20,8 @@ class FrontierConfig:
 
     min_cells: int = 3
     """A frontier of fewer planning cells is left alone."""
+    beside_walls: bool = False
+    """Whether cells that touch something occupied count: a narrow door has hardly any others."""
 
     def __post_init__(self) -> None:
         """Refuse a figure that lets nothing count."""
@@ -49,7 +51,7 @@ def find_frontiers(
         config: What counts.
         former_walls: Where walls were known to be; frontiers there are left out.
     """
-    marked = mark_frontier(costmap.states)
+    marked = mark_frontier(costmap.states, config.beside_walls)
     if former_walls is not None:
         former_walls.unmark(costmap, marked)
     labels, _ = ndimage.label(marked, structure=EIGHT_CONNECTED)

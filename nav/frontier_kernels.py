@@ -8,10 +8,11 @@ from mapping.grid import FREE, OCCUPIED, UNKNOWN
 
 
 @njit(cache=True)
-def mark_frontier(states: NDArray[np.int8]) -> NDArray[np.int8]:
+def mark_frontier(states: NDArray[np.int8], beside_walls: bool) -> NDArray[np.int8]:
     """1 for every free cell with an unknown neighbour of four and no occupied one of eight, else 0.
 
-    Where a wall was seen from afar its returns lie apart: the holes between them are no frontier.
+    Where a wall was seen from afar its returns lie apart: the holes between them are no frontier,
+    unless ``beside_walls``.
     """
     rows, columns = states.shape
     marked = np.zeros((rows, columns), dtype=np.int8)
@@ -23,7 +24,7 @@ def mark_frontier(states: NDArray[np.int8]) -> NDArray[np.int8]:
                 or (j > 0 and states[i, j - 1] == UNKNOWN)
                 or (j < columns - 1 and states[i, j + 1] == UNKNOWN)
             ):
-                marked[i, j] = not touches_occupied(states, i, j)
+                marked[i, j] = beside_walls or not touches_occupied(states, i, j)
     return marked
 
 

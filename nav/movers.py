@@ -144,6 +144,8 @@ class Movers:
             config.share,
         )
         came = counts >= LEAST_SCANS
+        if not came.any():
+            return []
         points, beams = near[came], newest.beams[is_near][came]
         wide = _has_neighbour(points, beams, len(newest.ranges), config.whole)
         return _middles(points[wide], config.same)

@@ -6,10 +6,9 @@ from functools import partial
 from numpy.typing import ArrayLike
 
 from mapping.errors import TestbedError
-from nav.decision import DecisionConfig
+from nav.decision import GAIN_RATE, RULES, DecisionConfig
 from nav.explorer import FrontierExplorer
 from nav.explorer_config import ExplorerConfig
-from nav.greedy_rules import GREEDY_RULES
 from nav.navigator import Navigator
 from nav.reactive import Reactive
 from nav.waypoints import Waypoints
@@ -25,7 +24,7 @@ def _explorer_by(rule: str) -> FrontierExplorer:
 
 NAVIGATORS: dict[str, Callable[..., Navigator]] = {
     "frontier": FrontierExplorer,
-    **{rule: partial(_explorer_by, rule) for rule in GREEDY_RULES},
+    **{rule: partial(_explorer_by, rule) for rule in RULES if rule != GAIN_RATE},
     "reactive": Reactive,
     WAYPOINTS: Waypoints,
 }

@@ -39,3 +39,7 @@ class PlaceMemory:
         self.former_walls.note(costmap, robot)
         self.returns.mark(costmap)  # after that: they are no walls that drift could move
         self.gaps.mark(costmap)
+
+    def mark_sure(self, costmap: Costmap) -> None:
+        """Put on it only what surely is a wall."""
+        self.returns.mark(costmap, sure=True)

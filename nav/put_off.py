@@ -41,7 +41,8 @@ class PutOff:
     def __init__(self, config: PutOffConfig | None = None) -> None:
         self.config = config or PutOffConfig()
         self._waiting: list[tuple[NDArray[np.float64], float]] = []
-        self._is_over = self.config.share == 0.0
+        self.is_over = self.config.share == 0.0
+        """Whether nothing waits any longer: what was put off is all that is left."""
 
     def worth_now(self, viewpoints: Sequence[Viewpoint], floor: float) -> list[Viewpoint]:
         """The viewpoints of frontiers that do not wait; all of them once no other is left.
@@ -50,12 +51,12 @@ class PutOff:
             viewpoints: Candidates, any number of a frontier.
             floor: Area known to be free [m2].
         """
-        if self._is_over:
+        if self.is_over:
             return list(viewpoints)
         waiting = self._choose(viewpoints, self.config.share * floor)
         now = [item for item in viewpoints if id(item.frontier) not in waiting]
-        if not now and viewpoints:
-            self._is_over = True
+        if not now:
+            self.is_over = True
             return list(viewpoints)
         return now
 

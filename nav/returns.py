@@ -14,7 +14,7 @@ from nav.costmap import Costmap
 from nav.returns_kernels import cells_between
 from nav.scan_points import ScanView
 
-NO_WAY_THROUGH = 0.25
+NO_WAY_THROUGH = 0.2
 """Between two neighbouring beams that met things so close together there is no way that the robot
 fits through with room to spare [m]."""
 NO_WAY_ALONG = 0.6
@@ -24,49 +24,77 @@ turns free when beams pass."""
 
 
 class Returns:
-    """The planning cells that scans met something in, once and more often."""
+    """The planning cells that scans met something in, once and more often.
+
+    Walls that are most likely there, and those that surely are, are remembered apart: a narrow door
+    may be taken for wall from afar, so somebody has to look closer before all is said to be known.
+    """
 
     def __init__(self) -> None:
-        self._once = CellMemory()
-        self._again = CellMemory()
+        self._likely = _Twice()
+        self._sure = _Twice()
 
     def note(self, costmap: Costmap, view: ScanView) -> None:
         """Remember where a scan met something; what lies outside the map is ignored."""
         if costmap.states.size == 0:
             return
-        self._follow(costmap)
-        rows, columns = self._cells(costmap, view).T
-        again = self._once.marks[rows, columns]
-        self._again.marks[rows[again], columns[again]] = True
-        self._once.marks[rows, columns] = True
+        self._likely.note(costmap, _cells(costmap, view, NO_WAY_ALONG))
+        self._sure.note(costmap, _cells(costmap, view, NO_WAY_THROUGH))
 
-    def mark(self, costmap: Costmap) -> None:
+    def mark(self, costmap: Costmap, sure: bool = False) -> None:
         """Take cells with returns from two scans, unknown or next to unknown, for occupied.
 
         A wall may lie in the last cell whose greater part is free. Clearances stay.
+
+        Args:
+            costmap: What to mark on.
+            sure: Whether to leave out what is most likely a wall seen at a grazing angle, but might
+                be a narrow door in it.
         """
-        self._follow(costmap)
+        again = (self._sure if sure else self._likely).again(costmap)
         unknown = costmap.states == UNKNOWN
         edge = unknown.copy()
         edge[1:] |= unknown[:-1]
         edge[:-1] |= unknown[1:]
         edge[:, 1:] |= unknown[:, :-1]
         edge[:, :-1] |= unknown[:, 1:]
-        costmap.states[self._again.marks & edge] = OCCUPIED
+        costmap.states[again & edge] = OCCUPIED
 
-    def _cells(self, costmap: Costmap, view: ScanView) -> NDArray[np.int64]:
-        """The cells ``(n, 2)``, each once or more, that a scan met something in."""
-        cells = cells_between(
-            view.points,
-            view.beams,
-            len(view.ranges),
-            NO_WAY_THROUGH,
-            NO_WAY_ALONG,
-            (float(costmap.origin[0]), float(costmap.origin[1]), costmap.resolution),
-        )
-        inside = np.all((cells >= 0) & (cells < costmap.states.shape), axis=1)
-        return np.asarray(cells[inside])
+
+class _Twice:
+    """The planning cells that something was noted in, once and more often."""
+
+    def __init__(self) -> None:
+        self._once = CellMemory()
+        self._again = CellMemory()
+
+    def note(self, costmap: Costmap, cells: NDArray[np.int64]) -> None:
+        """Note cells ``(n, 2)`` of one scan; one may come more than once."""
+        self._follow(costmap)
+        rows, columns = cells.T
+        again = self._once.marks[rows, columns]
+        self._again.marks[rows[again], columns[again]] = True
+        self._once.marks[rows, columns] = True
+
+    def again(self, costmap: Costmap) -> NDArray[np.bool_]:
+        """Whether each cell was noted in two scans or more."""
+        self._follow(costmap)
+        return self._again.marks
 
     def _follow(self, costmap: Costmap) -> None:
         self._once.follow(costmap)
         self._again.follow(costmap)
+
+
+def _cells(costmap: Costmap, view: ScanView, straight_gap: float) -> NDArray[np.int64]:
+    """The cells ``(n, 2)``, each once or more, that a scan met something in."""
+    cells = cells_between(
+        view.points,
+        view.beams,
+        len(view.ranges),
+        NO_WAY_THROUGH,
+        straight_gap,
+        (float(costmap.origin[0]), float(costmap.origin[1]), costmap.resolution),
+    )
+    inside = np.all((cells >= 0) & (cells < costmap.states.shape), axis=1)
+    return np.asarray(cells[inside])

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from mapping.burger import LIDAR_POSE_BASE
 from mapping.deskew_kernels import aim, interpolate
-from mapping.geometry import Pose, compose, transform_points
+from mapping.geometry import Pose, compose, transform_points, wrap_to_pi
 from mapping.messages import LaserScan
 
 IN_THE_MAP = np.zeros(3)
@@ -101,8 +101,8 @@ def _view_of(
     scan: LaserScan, poses: Pose, points: NDArray[np.float64], beams: NDArray[np.int64]
 ) -> ScanView:
     """The view of a scan of two beams or more, taken at poses ``(k, 3)``."""
-    middle = len(poses) // 2
-    directions = np.unwrap(poses[:, 2]) + LIDAR_POSE_BASE[2] + scan.angles
+    middle, last = len(poses) // 2, len(poses) - 1
+    turned = float(wrap_to_pi(poses[last, 2] - poses[0, 2]))
     ranges = scan.ranges.astype(np.float64)
     ranges[~(ranges >= scan.range_min)] = math.nan
     return ScanView(
@@ -110,7 +110,7 @@ def _view_of(
         points=points,
         beams=beams,
         origin=compose(poses[middle], np.array(LIDAR_POSE_BASE))[:2],
-        bearing=float(directions[0]),
-        increment=float((directions[-1] - directions[0]) / (len(poses) - 1)),
+        bearing=float(poses[0, 2]) + LIDAR_POSE_BASE[2] + scan.angle_min,
+        increment=turned / last + scan.angle_increment,
         ranges=ranges,
     )

@@ -161,8 +161,8 @@ class OdometryCalibration:
     def _learn_noise(self, surprise: NDArray[np.float64], spread: NDArray[np.float64]) -> None:
         """Move the noise towards what makes surprises as large as they are expected to be."""
         ratios = np.minimum(surprise**2 / np.diag(spread), LARGEST_SURPRISE)
-        step = np.exp(self.config.noise_step * (ratios - 1.0))
+        ahead, aside, turn = np.exp(self.config.noise_step * (ratios - 1.0)).tolist()
         most = self.config.first_noise
-        self.ahead_noise = float(np.clip(self.ahead_noise * step[0], 1.0, most))
-        self.aside_noise = float(np.clip(self.aside_noise * step[1], 1.0, most))
-        self.turn_noise = float(np.clip(self.turn_noise * step[2], 1.0, most))
+        self.ahead_noise = min(max(self.ahead_noise * ahead, 1.0), most)
+        self.aside_noise = min(max(self.aside_noise * aside, 1.0), most)
+        self.turn_noise = min(max(self.turn_noise * turn, 1.0), most)

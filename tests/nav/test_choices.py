@@ -6,7 +6,7 @@ import pytest
 from mapping.errors import TestbedError
 from mapping.grid import OccupancyGrid
 from mapping.messages import LaserScan
-from nav.decision import DecisionConfig, choose
+from nav.decision import GAIN_RATE, TOUR, DecisionConfig, choose
 from nav.frontier import Frontier
 from nav.given_up import GivenUp
 from nav.headway import Headway, HeadwayConfig
@@ -37,30 +37,50 @@ OPEN_FIELD = CostField.around(
 MIDDLE = np.array([5.0, 5.0, 0.0])
 
 
-def choice(*viewpoints: Viewpoint, current: Viewpoint | None = None) -> Viewpoint | None:
-    return choose(viewpoints, OPEN_FIELD, MIDDLE, current, DecisionConfig())
+def choice(
+    *viewpoints: Viewpoint, current: Viewpoint | None = None, rule: str = GAIN_RATE
+) -> Viewpoint | None:
+    return choose(viewpoints, OPEN_FIELD, MIDDLE, current, DecisionConfig(rule=rule))
 
 
-def test_of_two_equal_gains_the_nearer_is_chosen() -> None:
+@pytest.mark.parametrize("rule", [GAIN_RATE, TOUR])
+def test_of_two_equal_gains_the_nearer_is_chosen(rule: str) -> None:
     near, far = viewpoint_at(6.0, 5.0, 1.0), viewpoint_at(8.0, 5.0, 1.0)
-    assert choice(far, near) is near
+    assert choice(far, near, rule=rule) is near
 
 
-def test_much_to_see_far_off_waits_for_a_crumb_on_the_way() -> None:
+@pytest.mark.parametrize("rule", [GAIN_RATE, TOUR])
+def test_of_two_equally_far_the_one_that_shows_more_is_chosen(rule: str) -> None:
+    less, more = viewpoint_at(7.0, 6.0, 1.0), viewpoint_at(7.0, 4.0, 2.0)
+    assert choice(less, more, rule=rule) is more
+
+
+def test_four_times_as_much_is_worth_three_times_the_way_and_not_five_times() -> None:
+    near = viewpoint_at(6.0, 5.0, 1.0)
+    assert choice(near, viewpoint_at(8.0, 5.0, 4.0)) is not near
+    assert choice(near, viewpoint_at(9.9, 5.0, 4.0)) is near
+    assert choice(near, viewpoint_at(9.9, 5.0, 40.0)) is not near
+    assert choice(near, viewpoint_at(9.9, 9.9, 40.0)) is near, "no guess counts for so much"
+
+
+def test_on_a_tour_much_to_see_far_off_waits_for_a_crumb_on_the_way() -> None:
     crumb, room = viewpoint_at(6.0, 5.0, 0.3), viewpoint_at(9.0, 5.0, 4.0)
-    assert choice(crumb, room) is crumb
+    assert choice(crumb, room, rule=TOUR) is crumb
     behind = viewpoint_at(2.0, 5.0, 0.3)
-    assert choice(behind, room) is room
+    assert choice(behind, room, rule=TOUR) is room
 
 
-def test_a_slightly_better_frontier_does_not_make_the_robot_turn_back() -> None:
-    here, there = viewpoint_at(6.0, 5.0, 1.0), viewpoint_at(4.2, 5.0, 3.0)
-    assert choice(here, there) is there
-    assert choice(here, there, current=here) is here
+@pytest.mark.parametrize(("rule", "gain"), [(GAIN_RATE, 1.5), (TOUR, 3.0)])
+def test_a_slightly_better_frontier_does_not_make_the_robot_turn_back(
+    rule: str, gain: float
+) -> None:
+    here, there = viewpoint_at(6.0, 5.0, 1.0), viewpoint_at(4.2, 5.0, gain)
+    assert choice(here, there, rule=rule) is there
+    assert choice(here, there, current=here, rule=rule) is here
 
 
 def test_a_robot_that_changed_its_mind_in_vain_grows_loyal() -> None:
-    here, there = viewpoint_at(8.0, 5.0, 1.0), viewpoint_at(4.0, 5.0, 4.0)
+    here, there = viewpoint_at(8.0, 5.0, 1.0), viewpoint_at(4.0, 5.0, 1.5)
     assert choice(here, there, current=here) is there
     loyalty = Loyalty()
     for current, chosen in ((here, there), (there, here), (here, there)):
@@ -84,7 +104,7 @@ def test_of_no_viewpoints_none_is_chosen() -> None:
 
 def test_of_more_viewpoints_than_are_toured_one_is_chosen_all_the_same() -> None:
     many = [viewpoint_at(1.0 + 0.1 * k, 3.0, 1.0) for k in range(60)]
-    assert choice(*many) in many
+    assert choice(*many, rule=TOUR) in many
 
 
 def test_two_disappointments_make_a_frontier_given_up() -> None:
@@ -190,6 +210,6 @@ def test_the_reactive_navigator_drives_when_it_is_open_and_turns_to_the_open_sid
 
 def test_an_unknown_navigator_is_refused_with_the_known_names() -> None:
     with pytest.raises(
-        TestbedError, match="frontier, nearest, explore_lite, gain_cost, reactive, waypoints"
+        TestbedError, match="frontier, tour, nearest, explore_lite, gain_cost, reactive, waypoints"
     ):
         make_navigator("magic")

@@ -12,7 +12,7 @@ from nav.frontier_kernels import mark_frontier
 from tests.nav.grids import ROOM_WITH_UNKNOWN_EAST, costmap_of, grid_from_text, random_grid
 
 
-def plain_frontier(states: np.ndarray) -> np.ndarray:
+def plain_frontier(states: np.ndarray, beside_walls: bool) -> np.ndarray:
     padded = np.pad(states, 1, constant_values=FREE)
     rows, columns = states.shape
     marked = np.zeros(states.shape, dtype=bool)
@@ -21,15 +21,18 @@ def plain_frontier(states: np.ndarray) -> np.ndarray:
             cross = padded[[i, i + 2, i + 1, i + 1], [j + 1, j + 1, j, j + 2]]
             block = padded[i : i + 3, j : j + 3]
             borders = states[i, j] == FREE and (cross == UNKNOWN).any()
-            marked[i, j] = borders and not (block == OCCUPIED).any()
+            marked[i, j] = borders and (beside_walls or not (block == OCCUPIED).any())
     return marked
 
 
-@given(seed=st.integers(0, 10_000))
-@settings(max_examples=15, deadline=None)
-def test_the_marked_frontier_equals_a_plain_look_at_every_cell(seed: int) -> None:
+@given(seed=st.integers(0, 10_000), beside_walls=st.booleans())
+@settings(max_examples=20, deadline=None)
+def test_the_marked_frontier_equals_a_plain_look_at_every_cell(
+    seed: int, beside_walls: bool
+) -> None:
     states = costmap_of(random_grid(seed)).states
-    assert np.array_equal(mark_frontier(states), plain_frontier(states))
+    found = mark_frontier(states, beside_walls)
+    assert np.array_equal(found, plain_frontier(states, beside_walls))
 
 
 def test_one_open_side_is_one_frontier() -> None:

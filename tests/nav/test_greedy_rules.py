@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mapping.errors import TestbedError
-from nav.decision import RULES, TOUR, DecisionConfig, choose
+from nav.decision import GAIN_RATE, RULES, TOUR, DecisionConfig, choose
 from nav.explorer import FrontierExplorer
 from nav.frontier import Frontier
 from nav.greedy_rules import GREEDY_RULES, explore_lite, gain_per_cost, nearest
@@ -145,16 +145,16 @@ def test_the_rules_differ() -> None:
 def test_an_unknown_rule_is_refused_with_the_known_ones() -> None:
     with pytest.raises(
         TestbedError,
-        match=r"decision rule: 'best'; must be one of tour, nearest, explore_lite, gain_cost",
+        match="'best'; must be one of gain_rate, tour, nearest, explore_lite, gain_cost",
     ):
         DecisionConfig(rule="best")
 
 
 def test_every_rule_is_a_navigator_by_its_name() -> None:
-    for rule in GREEDY_RULES:
+    for rule in (TOUR, *GREEDY_RULES):
         navigator = make_navigator(rule)
         assert isinstance(navigator, FrontierExplorer)
         assert navigator.config.decision.rule == rule
     default = make_navigator("frontier")
     assert isinstance(default, FrontierExplorer)
-    assert default.config.decision.rule == TOUR
+    assert default.config.decision.rule == GAIN_RATE

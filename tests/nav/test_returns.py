@@ -84,8 +84,24 @@ def columns_between(gap: float, beams: list[int]) -> set[int]:
 
 def test_a_gap_of_30_cm_between_neighbouring_beams_stays_open_and_a_narrower_one_is_shut() -> None:
     assert columns_between(0.30, [7, 8]) == {50, 56}
-    assert columns_between(NO_WAY_THROUGH - 0.01, [7, 8]) == {50, 51, 52, 53, 54, 55}
+    assert columns_between(NO_WAY_THROUGH - 0.01, [7, 8]) == {50, 51, 52, 53}
     assert columns_between(0.20, [7, 9]) == {50, 54}, "the beam between them went through"
+
+
+def test_a_door_in_a_wall_seen_at_a_grazing_angle_is_most_likely_wall_but_not_surely() -> None:
+    """The wall's returns lie 0.1 m apart and leave 0.4 m out."""
+    wall = view_of([(2.51 + 0.1 * k, 1.02) for k in (0, 1, 2, 3, 4, 8, 9, 10)])
+    costmap, returns = costmap_of(HALF_KNOWN), Returns()
+    for _ in range(2):
+        returns.note(costmap, wall)
+    surely, likely = costmap_of(HALF_KNOWN), costmap_of(HALF_KNOWN)
+    returns.mark(surely, sure=True)
+    returns.mark(likely)
+    assert (likely.states[20, 50:71] == OCCUPIED).all()
+    assert np.flatnonzero(surely.states[20] == OCCUPIED).tolist() == [
+        *range(50, 59),
+        *range(66, 71),
+    ]
 
 
 def test_marks_follow_a_growing_map() -> None:
