@@ -41,7 +41,7 @@ class PutOff:
     def __init__(self, config: PutOffConfig | None = None) -> None:
         self.config = config or PutOffConfig()
         self._waiting: list[tuple[NDArray[np.float64], float]] = []
-        self.is_over = self.config.share == 0.0
+        self.is_over = False
         """Whether nothing waits any longer: what was put off is all that is left."""
 
     def worth_now(self, viewpoints: Sequence[Viewpoint], floor: float) -> list[Viewpoint]:
