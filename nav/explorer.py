@@ -120,6 +120,7 @@ class FrontierExplorer:
         would be in sight; one that is wrongly taken for such a one has its second chance.
         """
         self._decided_at = -np.inf
+        self._places.note_redraw()
         self._shift += shift_at(jump, compose(inverse(jump), pose))
         if self._shift > self.config.memory_shift:
             self._shift = 0.0
@@ -178,7 +179,7 @@ class FrontierExplorer:
 
     def _look(self, grid: OccupancyGrid, pose: Pose) -> None:
         self._costmap.refresh(grid, pose[:2], self._changed_reach())
-        self._places.mark(self._costmap, pose[:2])
+        self._places.mark(self._costmap, grid, pose[:2])
         self._looked_at = self._driver.time
 
     def _changed_reach(self) -> float:
@@ -212,7 +213,7 @@ class FrontierExplorer:
         if not self._places.gaps.reopen():
             return False
         self._costmap.refresh(grid)
-        self._places.mark(self._costmap, pose[:2])
+        self._places.mark(self._costmap, grid, pose[:2])
         return True
 
     def _best_viewpoint(

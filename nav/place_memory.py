@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from mapping.grid import OccupancyGrid
 from nav.closed_gaps import ClosedGaps
 from nav.costmap import Costmap
 from nav.former_walls import FormerWalls, FormerWallsConfig
@@ -16,6 +17,7 @@ class PlaceMemory:
 
     def __init__(self, visited: VisitedPlacesConfig, former_walls: FormerWallsConfig) -> None:
         self._configs = visited, former_walls
+        self._is_redrawn = False
         self.forget()
 
     def forget(self) -> None:
@@ -26,6 +28,10 @@ class PlaceMemory:
         self.returns = Returns()
         self.gaps = ClosedGaps()
 
+    def note_redraw(self) -> None:
+        """Take note that the map is drawn anew: it will tell by itself what scans met."""
+        self._is_redrawn = True
+
     def note_scan(
         self, costmap: Costmap, robot: NDArray[np.float64], view: ScanView | None
     ) -> None:
@@ -34,8 +40,11 @@ class PlaceMemory:
         if view is not None:
             self.returns.note(costmap, view)
 
-    def mark(self, costmap: Costmap, robot: NDArray[np.float64]) -> None:
-        """Put all of it on a costmap that was just refreshed around the robot ``(2,)``."""
+    def mark(self, costmap: Costmap, grid: OccupancyGrid, robot: NDArray[np.float64]) -> None:
+        """Put all of it on a costmap of a map, just refreshed around the robot ``(2,)``."""
+        if self._is_redrawn:
+            self.returns.take_over(costmap, grid)
+            self._is_redrawn = False
         self.former_walls.note(costmap, robot)
         self.returns.mark(costmap)  # after that: they are no walls that drift could move
         self.gaps.mark(costmap)

@@ -8,7 +8,7 @@ unknown looks like a way on. Returns in the same planning cell in two scans say 
 import numpy as np
 from numpy.typing import NDArray
 
-from mapping.grid import OCCUPIED, UNKNOWN
+from mapping.grid import OCCUPIED, UNKNOWN, OccupancyGrid
 from nav.cell_memory import CellMemory
 from nav.costmap import Costmap
 from nav.returns_kernels import cells_between
@@ -40,6 +40,24 @@ class Returns:
             return
         self._likely.note(costmap, _cells(costmap, view, NO_WAY_ALONG))
         self._sure.note(costmap, _cells(costmap, view, NO_WAY_THROUGH))
+
+    def take_over(self, costmap: Costmap, grid: OccupancyGrid) -> None:
+        """Remember where a map that was drawn anew has been hit more often than passed.
+
+        The mapper knows where its scans belong now, and the map has them all, though its cells,
+        finer than beams are apart, do not all call a wall what is one.
+
+        Args:
+            costmap: Lies over the map.
+            grid: The map.
+        """
+        rows, columns = costmap.states.shape
+        factor = round(costmap.resolution / grid.resolution)
+        hit = np.zeros((rows * factor, columns * factor), dtype=np.bool_)
+        hit[: grid.shape[0], : grid.shape[1]] = grid.log_odds > 0.0
+        cells = hit.reshape(rows, factor, columns, factor).any(axis=(1, 3))
+        self._likely.add(costmap, cells)
+        self._sure.add(costmap, cells)
 
     def mark(self, costmap: Costmap, sure: bool = False) -> None:
         """Take cells with returns from two scans, unknown or next to unknown, for occupied.
@@ -75,6 +93,11 @@ class _Twice:
         again = self._once.marks[rows, columns]
         self._again.marks[rows[again], columns[again]] = True
         self._once.marks[rows, columns] = True
+
+    def add(self, costmap: Costmap, cells: NDArray[np.bool_]) -> None:
+        """Take cells ``[row, col]`` for noted often enough."""
+        self._follow(costmap)
+        self._again.marks |= cells
 
     def again(self, costmap: Costmap) -> NDArray[np.bool_]:
         """Whether each cell was noted in two scans or more."""

@@ -12,7 +12,7 @@ from nav.costmap import Costmap
 from nav.frontier import FrontierConfig, find_frontiers
 from nav.returns import NO_WAY_THROUGH, Returns
 from nav.scan_points import ScanView
-from tests.nav.grids import costmap_of, grid_from_text
+from tests.nav.grids import costmap_of, grid_from_log_odds, grid_from_text
 from tests.nav.scans import Room, box, views_of
 
 HALF_KNOWN = grid_from_text("\n".join(["." * 40 + "?" * 40] * 40))
@@ -102,6 +102,17 @@ def test_a_door_in_a_wall_seen_at_a_grazing_angle_is_most_likely_wall_but_not_su
         *range(50, 59),
         *range(66, 71),
     ]
+
+
+def test_a_redrawn_map_tells_by_itself_where_scans_met_something() -> None:
+    log_odds = np.where(np.arange(400) < 200, -5.0, np.zeros((200, 400)))
+    log_odds[101, [203, 204, 218]] = 0.1
+    log_odds[160, 220] = -0.1
+    grid = grid_from_log_odds(log_odds, 0.01)
+    costmap, returns = costmap_of(grid), Returns()
+    returns.take_over(costmap, grid)
+    returns.mark(costmap)
+    assert np.argwhere(costmap.states == OCCUPIED).tolist() == [[20, 40], [20, 43]]
 
 
 def test_marks_follow_a_growing_map() -> None:
