@@ -55,7 +55,7 @@ class Returns:
         factor = round(costmap.resolution / grid.resolution)
         hit = np.zeros((rows * factor, columns * factor), dtype=np.bool_)
         hit[: grid.shape[0], : grid.shape[1]] = grid.log_odds > 0.0
-        cells = hit.reshape(rows, factor, columns, factor).any(axis=(1, 3))
+        cells = np.asarray(hit.reshape(rows, factor, columns, factor).any(axis=(1, 3)))
         self._likely.add(costmap, cells)
         self._sure.add(costmap, cells)
 
