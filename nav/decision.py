@@ -1,7 +1,8 @@
-"""Turns viewpoints into the one to drive to next: the one that shows most for the time it takes.
+"""Turns viewpoints into the one to drive to next: the one that shows most for the way it takes.
 
 While there are rooms to find, a plan over what is known now is worth little: the next view changes
-it. The rule ``tour`` makes such a plan all the same, to compare with; so do others' rules.
+it. The rule ``tour`` makes such a plan all the same, to compare with. Taking what is close first is
+what counts: what is left behind costs a way of its own.
 """
 
 from collections.abc import Sequence
@@ -20,8 +21,8 @@ from nav.viewpoint import Viewpoint
 GAIN_RATE, TOUR = "gain_rate", "tour"
 RULES = (GAIN_RATE, TOUR, *GREEDY_RULES)
 
-LEAST_SHARE = 0.5
-"""However loyal, no way counts for less than this share of the settling time."""
+SHORTEST_TIME = 0.25
+"""No way counts as shorter [s]: a planning cell's edge."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -30,6 +31,8 @@ class TourConfig:
 
     settling_time: float = 3.0
     """Time every viewpoint costs, however near [s]."""
+    turn_speed: float = 1.2
+    """Turn rate that the first turn is turned into time with [rad/s]."""
     loyalty: float = 4.0
     """Time by which another first leg must be better to be turned to [s]."""
     most_gain: float = 4.0
@@ -44,8 +47,8 @@ class TourConfig:
 
     def __post_init__(self) -> None:
         """Refuse figures that make no tour."""
-        if not self.settling_time > 0.0:
-            raise TestbedError(f"tour settling_time: {self.settling_time}; must be above 0")
+        if not (self.settling_time > 0.0 and self.turn_speed > 0.0):
+            raise TestbedError("tour: settling_time and turn_speed must be above 0")
         if not self.end_share >= 0.0:
             raise TestbedError(f"tour end_share: {self.end_share}; must be 0 or more")
         if self.toured < 1:
@@ -60,21 +63,15 @@ class DecisionConfig:
     """``gain_rate``; or, to compare with, ``tour`` or one of GREEDY_RULES."""
     speed: float = 0.2
     """Speed that costs are turned into time with [m/s]."""
-    turn_speed: float = 1.2
-    """Turn rate that the first turn is turned into time with [rad/s]."""
-    settling_time: float = 1.0
-    """Time that a view costs, however near: turning, braking, looking [s]."""
-    loyalty: float = 1.5
-    """Time by which another viewpoint must be better to be turned to [s]: no oscillation."""
-    most_gain: float = 6.0
-    """Area beyond which more does not count [m2]: guesses about far space are mostly wrong."""
+    loyalty: float = 2.0
+    """Time by which another viewpoint must be better to be turned to [s], times as often as the
+    robot has changed its mind in vain."""
     tour: TourConfig = TourConfig()
 
     def __post_init__(self) -> None:
         """Refuse figures that decide nothing."""
-        for name in ("speed", "turn_speed", "settling_time", "most_gain"):
-            if not getattr(self, name) > 0.0:
-                raise TestbedError(f"decision {name}: {getattr(self, name)}; must be above 0")
+        if not self.speed > 0.0:
+            raise TestbedError(f"decision speed: {self.speed}; must be above 0")
         if self.rule not in RULES:
             raise TestbedError(f"decision rule: {self.rule!r}; must be one of {', '.join(RULES)}")
 
@@ -95,42 +92,39 @@ def choose(
         pose: Where the robot is ``(3,)``.
         current: Where it is going, if anywhere; favoured.
         config: What is weighed how.
-        loyalty: How many times as loyal to the current viewpoint as ``config`` asks to be.
+        loyalty: How many times as loyal to the current viewpoint as usual; ``Loyalty`` tells.
     """
     if config.rule in GREEDY_RULES:
         return GREEDY_RULES[config.rule](viewpoints, field, pose)
-    tour = config.tour
     if config.rule == TOUR:
-        times = _times(
-            viewpoints, pose, current, config, tour.settling_time, loyalty * tour.loyalty
-        )
+        times = _tour_times(viewpoints, pose, current, config, loyalty)
         return _first_of_tour(viewpoints, times, field, config)
-    times = _times(
-        viewpoints, pose, current, config, config.settling_time, loyalty * config.loyalty
-    )
-    rates = [
-        min(viewpoint.gain, config.most_gain) / time
-        for viewpoint, time in zip(viewpoints, times, strict=True)
-    ]
-    return viewpoints[int(np.argmax(rates))] if rates else None
+
+    def rate(viewpoint: Viewpoint) -> float:
+        time = viewpoint.cost / config.speed
+        if current is not None and viewpoint.is_near(current):
+            time -= (loyalty - 1.0) * config.loyalty
+        return viewpoint.gain / max(time, SHORTEST_TIME)
+
+    return max(viewpoints, key=rate, default=None)
 
 
-def _times(
+def _tour_times(
     viewpoints: Sequence[Viewpoint],
     pose: Pose,
     current: Viewpoint | None,
     config: DecisionConfig,
-    settling: float,
-    loyal: float,
+    loyalty: float,
 ) -> list[float]:
-    """Time to each viewpoint [s], less what loyalty to the current frontier is worth [s]."""
+    """Time to each viewpoint [s], less what loyalty to the current frontier is worth."""
+    tour = config.tour
     times = []
     for viewpoint in viewpoints:
         offset = viewpoint.place - pose[:2]
         turn = abs(float(wrap_to_pi(np.arctan2(offset[1], offset[0]) - pose[2])))
-        time = settling + viewpoint.cost / config.speed + turn / config.turn_speed
+        time = tour.settling_time + viewpoint.cost / config.speed + turn / tour.turn_speed
         if current is not None and viewpoint.is_near(current):
-            time = max(time - loyal, LEAST_SHARE * settling)
+            time = max(time - loyalty * tour.loyalty, 0.5 * tour.settling_time)
         times.append(time)
     return times
 
