@@ -90,7 +90,6 @@ class Simulation:
         self.model = build_scene(plan, people=walking)
         self.data = mujoco.MjData(self.model)
         self._walkers = Walkers(self.model, walking)
-        self._has_people = walking > 0
         self._contacts = ContactCounter(self.model, self._walkers.geoms)
         self._lidar = Lidar(self.model, preset("lidar", lidar, LIDAR_PRESETS))
         self._encoders = WheelEncoders(preset("odometry", odometry, ODOMETRY_PRESETS))
@@ -191,7 +190,7 @@ class Simulation:
         self._scan: tuple[float, NDArray[np.float32]] | None = None
         while self._step < end:
             event = min(next_event(self._step), end)
-            if self._has_people:
+            if len(self._walkers):
                 self._step_among_people(event)
             else:
                 mujoco.mj_step(self.model, self.data, nstep=event - self._step)
@@ -251,7 +250,7 @@ class Simulation:
 
     def _feet_of_block(self) -> NDArray[np.float64] | None:
         """Where the legs were at the times of the block's states ``(3, m, 2)`` [m], if any."""
-        if not self._has_people:
+        if not len(self._walkers):
             return None
         first = self._step - BLOCK_STEPS
         return self._walkers.feet(

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from mapping.errors import TestbedError
 from mapping.geometry import Pose, wrap_to_pi
-from nav.greedy_rules import GREEDY_RULES
+from nav.greedy_rules import GREEDY_RULES, SHORTEST_WAY
 from nav.planner import CostField
 from nav.tour import best_order
 from nav.viewpoint import Viewpoint
@@ -21,20 +21,21 @@ from nav.viewpoint import Viewpoint
 GAIN_RATE, TOUR = "gain_rate", "tour"
 RULES = (GAIN_RATE, TOUR, *GREEDY_RULES)
 
-SHORTEST_TIME = 0.25
-"""No way counts as shorter [s]: a planning cell's edge."""
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TourConfig:
     """What the viewpoints of a tour are weighed by."""
 
+    speed: float = 0.2
+    """Speed that costs are turned into time with [m/s]."""
     settling_time: float = 3.0
     """Time every viewpoint costs, however near [s]."""
     turn_speed: float = 1.2
     """Turn rate that the first turn is turned into time with [rad/s]."""
     loyalty: float = 4.0
     """Time by which another first leg must be better to be turned to [s]."""
+    least_time: float = 1.5
+    """However loyal, no first leg counts for less [s]: half a settling time."""
     most_gain: float = 4.0
     """Area beyond which more does not count [m2]: guesses about far space are mostly wrong."""
     base_worth: float = 0.5
@@ -47,8 +48,9 @@ class TourConfig:
 
     def __post_init__(self) -> None:
         """Refuse figures that make no tour."""
-        if not (self.settling_time > 0.0 and self.turn_speed > 0.0):
-            raise TestbedError("tour: settling_time and turn_speed must be above 0")
+        for name in ("speed", "settling_time", "turn_speed", "least_time"):
+            if not getattr(self, name) > 0.0:
+                raise TestbedError(f"tour {name}: {getattr(self, name)}; must be above 0")
         if not self.end_share >= 0.0:
             raise TestbedError(f"tour end_share: {self.end_share}; must be 0 or more")
         if self.toured < 1:
@@ -61,17 +63,13 @@ class DecisionConfig:
 
     rule: str = GAIN_RATE
     """``gain_rate``; or, to compare with, ``tour`` or one of GREEDY_RULES."""
-    speed: float = 0.2
-    """Speed that costs are turned into time with [m/s]."""
-    loyalty: float = 2.0
-    """Time by which another viewpoint must be better to be turned to [s], times as often as the
-    robot has changed its mind in vain."""
+    loyalty: float = 0.4
+    """How much less the way to where the robot is going counts [m, as costs], times one less than
+    ``Loyalty`` tells: nothing until it has changed its mind in vain."""
     tour: TourConfig = TourConfig()
 
     def __post_init__(self) -> None:
         """Refuse figures that decide nothing."""
-        if not self.speed > 0.0:
-            raise TestbedError(f"decision speed: {self.speed}; must be above 0")
         if self.rule not in RULES:
             raise TestbedError(f"decision rule: {self.rule!r}; must be one of {', '.join(RULES)}")
 
@@ -97,14 +95,14 @@ def choose(
     if config.rule in GREEDY_RULES:
         return GREEDY_RULES[config.rule](viewpoints, field, pose)
     if config.rule == TOUR:
-        times = _tour_times(viewpoints, pose, current, config, loyalty)
-        return _first_of_tour(viewpoints, times, field, config)
+        times = _tour_times(viewpoints, pose, current, config.tour, loyalty)
+        return _first_of_tour(viewpoints, times, field, config.tour)
 
     def rate(viewpoint: Viewpoint) -> float:
-        time = viewpoint.cost / config.speed
+        way = viewpoint.cost
         if current is not None and viewpoint.is_near(current):
-            time -= (loyalty - 1.0) * config.loyalty
-        return viewpoint.gain / max(time, SHORTEST_TIME)
+            way -= (loyalty - 1.0) * config.loyalty
+        return viewpoint.gain / max(way, SHORTEST_WAY)
 
     return max(viewpoints, key=rate, default=None)
 
@@ -113,27 +111,25 @@ def _tour_times(
     viewpoints: Sequence[Viewpoint],
     pose: Pose,
     current: Viewpoint | None,
-    config: DecisionConfig,
+    tour: TourConfig,
     loyalty: float,
 ) -> list[float]:
     """Time to each viewpoint [s], less what loyalty to the current frontier is worth."""
-    tour = config.tour
     times = []
     for viewpoint in viewpoints:
         offset = viewpoint.place - pose[:2]
         turn = abs(float(wrap_to_pi(np.arctan2(offset[1], offset[0]) - pose[2])))
-        time = tour.settling_time + viewpoint.cost / config.speed + turn / tour.turn_speed
+        time = tour.settling_time + viewpoint.cost / tour.speed + turn / tour.turn_speed
         if current is not None and viewpoint.is_near(current):
-            time = max(time - loyalty * tour.loyalty, 0.5 * tour.settling_time)
+            time = max(time - loyalty * tour.loyalty, tour.least_time)
         times.append(time)
     return times
 
 
 def _first_of_tour(
-    viewpoints: Sequence[Viewpoint], times: list[float], field: CostField, config: DecisionConfig
+    viewpoints: Sequence[Viewpoint], times: list[float], field: CostField, tour: TourConfig
 ) -> Viewpoint | None:
     """The first of the best tour over one viewpoint of each frontier."""
-    tour = config.tour
     best: dict[int, tuple[float, Viewpoint, float]] = {}
     for viewpoint, time in zip(viewpoints, times, strict=True):
         ratio = _worth(viewpoint, tour) / time
@@ -146,7 +142,7 @@ def _first_of_tour(
     chosen = [viewpoint for _, viewpoint, _ in leading]
     first_legs = np.array([time for _, _, time in leading])
     weights = np.array([_worth(viewpoint, tour) for viewpoint in chosen])
-    legs = _legs(chosen, field) / config.speed + tour.settling_time
+    legs = _legs(chosen, field) / tour.speed + tour.settling_time
     return chosen[int(best_order(first_legs, legs, weights, tour.end_share)[0])]
 
 
