@@ -102,7 +102,7 @@ class GraphSlam(ScanMatch):
         if abs(scale - self.painter.scale) > self.config.scale_step:
             self.painter.scale = scale
         self._resting = max(self._resting - 1, 0)
-        if self._resting == 0:
+        if self._resting == 0 and self._can_match(cloud):
             self._close_loops(number)
         return number
 

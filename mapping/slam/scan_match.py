@@ -131,12 +131,14 @@ class ScanMatch:
         self._keep(sweep)
 
     def _is_new(self, cloud: ScanCloud, score: float) -> bool:
-        """Whether the map has no keyframe like this scan; notes the nearest one."""
+        """Whether the map has no keyframe like this scan; notes the nearest one.
+
+        One that sees too little to be matched becomes a keyframe too, or a hall wider than the
+        lidar sees would be a single step from wall to wall that no loop can bend.
+        """
         graph, config = self.graph, self.config
         if len(graph) == 0:
             return True
-        if len(cloud) < config.matcher.least_points:
-            return False
         known = self._tracker.local.keyframes or [self._nearest]
         offsets = graph.poses[known, :2] - self._tracker.pose[:2]
         distances = np.hypot(offsets[:, 0], offsets[:, 1])
@@ -144,16 +146,22 @@ class ScanMatch:
             np.remainder(graph.poses[known, 2] - self._tracker.pose[2] + np.pi, 2 * np.pi) - np.pi
         )
         costs = distances / config.keyframe_distance
-        if not cloud.looks_around:
+        is_told = self._can_match(cloud)
+        if is_told and not cloud.looks_around:
             costs = costs + turned / config.keyframe_turn
         nearest = int(np.argmin(costs))
         self._nearest = known[nearest]
-        return bool(costs[nearest] > (FAR_APART if score >= config.explained else 1.0))
+        apart = 1.0 if is_told and score < config.explained else FAR_APART
+        return bool(costs[nearest] > apart)
+
+    def _can_match(self, cloud: ScanCloud) -> bool:
+        """Whether it shows enough to be matched, or to match others with."""
+        return len(cloud) >= self.config.matcher.least_points
 
     def _add_keyframe(self, cloud: ScanCloud) -> int:
         """Make the newest scan a keyframe, tied to those that it was matched with."""
         graph, pose = self.graph, self._tracker.pose
-        ties = self._ties(view_of(pose, cloud)) if len(graph) else []
+        ties = self._ties(view_of(pose, cloud)) if len(graph) and self._can_match(cloud) else []
         number = graph.add(pose, cloud)
         covariance = (self._tracker.covariance + EDGE_FLOOR) * max(len(ties), 1)
         for other in ties:
@@ -175,11 +183,19 @@ class ScanMatch:
         tracker.forget_reckoned()
 
     def _ties(self, view: NDArray[np.float64]) -> list[int]:
-        """The keyframes that a new one is tied to: newest, nearest, and nearest of the old ones."""
+        """The keyframes that a new one is tied to: newest, nearest, and nearest of the old ones.
+
+        None that shows too little to be matched with: where it is, no match has told.
+        """
         graph = self.graph
         known = np.array(self._tracker.local.keyframes or [self._nearest])
+        known = known[[self._can_match(graph.clouds[k]) for k in known]]
+        if len(known) == 0:
+            return []
         away = np.hypot(*(graph.views[known] - view).T)
-        ties = {int(known.max()), int(known[np.argmin(away)]), self._nearest}
+        ties = {int(known.max()), int(known[np.argmin(away)])}
+        if self._nearest in known:
+            ties.add(self._nearest)
         old = known < len(graph) - OLD
         if np.any(old):
             ties.add(int(known[old][np.argmin(away[old])]))

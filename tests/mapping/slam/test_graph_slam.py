@@ -13,6 +13,7 @@ from tests.mapping.slam.rooms import (
     LONG_RING_WAY,
     RING_WAY,
     Run,
+    box,
     drive,
     fed,
     long_ring,
@@ -177,9 +178,23 @@ def test_a_robot_that_sees_nothing_goes_where_its_odometry_says_and_closes_no_lo
         assert scan is not None
         mapper.update(replace(scan, ranges=np.full(360, np.inf, dtype=np.float32)), odometry)
     assert mapper.loops == 0
-    assert len(mapper.graph) == 1
+    edges = [(edge.a, edge.b) for edge in mapper.graph.edges]
+    assert edges == [(k, k + 1) for k in range(len(mapper.graph) - 1)], "no match ties any"
+    assert len(edges) > 10
     off = between(run.odometry_end, mapper.trajectory.poses[-1])
     assert np.hypot(off[0], off[1]) < 0.01
+
+
+def test_a_hall_wider_than_the_lidar_sees_stays_on_the_map_when_it_is_drawn_anew() -> None:
+    hall = box(-9.0, 9.0, -6.0, 6.0)
+    way = [(-6.5, -3.5), (2.0, 0.0), (0.0, 2.0), (6.5, -3.5)]
+    run = drive(hall, way, np.random.default_rng(2), noise=0.01)
+    mapper = GraphSlam(start_pose_map=run.start, grid=GRID)
+    fed(mapper, run.periods)
+    free = mapper.grid.states() == FREE
+    mapper.painter.redraw()
+    mapper.painter.work(len(mapper.painter))
+    assert np.count_nonzero(free & (mapper.grid.states() != FREE)) < 0.01 * np.count_nonzero(free)
 
 
 @pytest.mark.parametrize(
