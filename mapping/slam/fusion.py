@@ -69,7 +69,7 @@ class FusedTrack:
 
     @property
     def gyro_bias(self) -> tuple[float, float]:
-        """The gyroscope's bias and its standard deviation [rad/s]."""
+        """The gyroscope's bias as measured, and its standard deviation [rad/s]."""
         return self._filter.bias, math.sqrt(self._filter.covariance[BIAS, BIAS])
 
     @property
@@ -141,7 +141,7 @@ class FusedTrack:
         else:
             self._filter.drive(motion, duration, gyro, wheels_tell_turns=self.wheels_tell_turns)
         if gyro[3]:
-            rate = float(self._rates[-1, 1]) - self._filter.bias
+            rate = float(self._rates[-1, 1]) - self._filter.likely_bias
         x, y, yaw = self._filter.state[:3].tolist()
         return (row[0], x, y, math.remainder(yaw, 2.0 * math.pi), speed, rate)
 

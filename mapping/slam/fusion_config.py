@@ -41,6 +41,10 @@ class FusionConfig:
     gyro_bias: float = 3.1e-4
     """Constant error of the gyroscope before the first rest [rad/s]: the firmware zeroes it in
     whole steps of 2000 deg/s / 2^15 (OpenCR MPU9250.cpp@2bd5e0c), which leaves step / sqrt(12)."""
+    calibrated_bias: float = 7.5e-6
+    """The same of one that was calibrated well at rest (turtlebot3_burger.gazebo.xacro, noetic)."""
+    calibrated: float = 0.5
+    """How likely that is, 0 to 1 [assumption]."""
     gyro_bias_walk: float = 1e-6
     """Change of that error in one second [rad/s], a random walk [assumption: warming up]."""
     gyro_gap: float = 0.1
@@ -84,6 +88,8 @@ class FusionConfig:
                 continue
             if not (math.isfinite(value) and value >= 0.0):
                 raise TestbedError(f"fusion {field.name}: {value}; must be finite and not negative")
+        if self.calibrated > 1.0:
+            raise TestbedError(f"fusion calibrated: {self.calibrated}; must be from 0 to 1")
         for name in ("slip_gate", "max_speed", "max_turn_rate"):
             if getattr(self, name) == 0.0:
                 raise TestbedError(f"fusion {name}: 0; must be above 0")

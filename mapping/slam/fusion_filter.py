@@ -38,8 +38,13 @@ class FusionFilter:
 
     @property
     def bias(self) -> float:
-        """The gyroscope's bias [rad/s]."""
+        """The gyroscope's bias as measured [rad/s]."""
         return float(self.state[BIAS])
+
+    @property
+    def likely_bias(self) -> float:
+        """The bias to expect [rad/s], given that it may have been calibrated away."""
+        return likely_bias(self.bias, float(self.covariance[BIAS, BIAS]), self.config)
 
     def begin(self, x: float, y: float, yaw: float) -> None:
         """Stand at a pose, exactly."""
@@ -96,6 +101,7 @@ class FusionFilter:
         across, along = self._move(_bent(motion, turn), gains, variances, duration)
         if not (is_covered and wheels_tell_turns):
             return
+        turn = gyro[0] - duration * self.bias
         shared = scale * turn_variance  # the gyroscope's noise is in the pose and in the prediction
         correct(
             self.state,
@@ -126,7 +132,7 @@ class FusionFilter:
         """The unbiased turn [rad], its variance, and what bias and turn scale add to it."""
         angle, squares, _, _ = gyro
         variance = self.config.gyro_noise**2 * squares
-        return angle - duration * self.bias, variance, (-duration, 0.0)
+        return angle - duration * self.likely_bias, variance, (-duration, 0.0)
 
     def _move(
         self,
@@ -140,6 +146,37 @@ class FusionFilter:
             self.state, self.covariance, motion, gains, (*variances, walk)
         )
         return displacement
+
+
+def likely_bias(believed: float, variance: float, config: FusionConfig) -> float:
+    """The bias [rad/s] to expect of a gyroscope that was calibrated well, or was not.
+
+    A second at rest measures a bias three times worse than a good calibration leaves it; taken at
+    its word it would turn the map by a degree in ten minutes. Both kinds are taken as Gaussian;
+    the answer is the posterior mean (Bishop 2006, 2.3.3 and 2.3.9).
+
+    Args:
+        believed: The mean of a filter that began with ``gyro_bias`` [rad/s].
+        variance: Its variance [rad2/s2].
+        config: What is known of gyroscopes.
+    """
+    prior = config.gyro_bias**2
+    if not 0.0 < variance < prior:
+        return believed  # known exactly, or not measured yet
+    # what was measured, without the prior that the filter began with
+    noise = 1.0 / (1.0 / variance - 1.0 / prior)
+    measured = believed * noise / variance
+    kinds = (
+        (config.calibrated, config.calibrated_bias**2),
+        (1.0 - config.calibrated, prior),
+    )
+    mean, evidence = 0.0, 0.0
+    for share, bias in kinds:
+        spread = bias + noise
+        likelihood = share * math.exp(-0.5 * measured**2 / spread) / math.sqrt(spread)
+        mean += likelihood * measured * bias / spread
+        evidence += likelihood
+    return mean / evidence if evidence > 0.0 else believed
 
 
 def _bent(motion: Motion, turn: float) -> Motion:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.stats import norm
 
 from envs.wheel_encoders import YawSource
 from mapping.deskew import OdometryTrack
@@ -13,6 +14,7 @@ from mapping.errors import TestbedError
 from mapping.geometry import between, compose, wrap_to_pi
 from mapping.slam.fusion import FusedTrack
 from mapping.slam.fusion_config import FusionConfig
+from mapping.slam.fusion_filter import likely_bias
 from tests.mapping.slam.drives import drive, patrol
 from tests.mapping.slam.fusion_drives import follow, gyro, message, rms, yaw_error
 
@@ -70,7 +72,9 @@ def test_motions_between_marks_err_as_much_as_their_covariance_says() -> None:
 def test_turning_on_the_spot_it_finds_the_least_squares_solution() -> None:
     """Without scale errors the turn is linear in the bias: a batch solves for all at once."""
     rng = np.random.default_rng(3)
-    config = FusionConfig(turn_scale=0.0, gyro_bias_walk=0.0, heading_from="encoders")
+    config = FusionConfig(
+        turn_scale=0.0, gyro_bias_walk=0.0, calibrated=0.0, heading_from="encoders"
+    )
     count, dt = 40, 0.05
     true_rates = rng.uniform(0.4, 1.2, count + 1)
     turns = 0.5 * (true_rates[1:] + true_rates[:-1]) * dt
@@ -100,6 +104,47 @@ def test_turning_on_the_spot_it_finds_the_least_squares_solution() -> None:
     assert track.motion_covariance()[2, 2] == pytest.approx(yaw @ covariance @ yaw, rel=1e-6)
     assert track.gyro_bias[0] == pytest.approx(solution[0], rel=1e-6)
     assert track.gyro_bias[1] == pytest.approx(np.sqrt(covariance[0, 0]), rel=1e-6)
+
+
+@given(
+    measured=st.floats(-1e-3, 1e-3),
+    sigma=st.floats(2e-6, 1e-3),
+    calibrated=st.floats(0.0, 1.0),
+)
+def test_the_likely_bias_is_the_posterior_mean_of_both_kinds_of_gyroscopes(
+    measured: float, sigma: float, calibrated: float
+) -> None:
+    config = FusionConfig(calibrated=calibrated)
+    biases = np.sort(
+        np.concatenate((np.linspace(-2e-3, 2e-3, 20_001), np.linspace(-9e-5, 9e-5, 20_001)))
+    )
+    prior = calibrated * norm.pdf(biases, 0.0, config.calibrated_bias)
+    prior += (1.0 - calibrated) * norm.pdf(biases, 0.0, config.gyro_bias)
+    posterior = prior * norm.pdf(measured, biases, sigma)
+    wanted = np.trapezoid(biases * posterior, biases) / np.trapezoid(posterior, biases)
+    variance = 1.0 / (sigma**-2 + config.gyro_bias**-2)  # of a filter that knows one kind
+    likely = likely_bias(measured * variance / sigma**2, variance, config)
+    assert likely == pytest.approx(wanted, rel=2e-3, abs=2e-9)
+
+
+def test_before_any_rest_no_bias_is_likely() -> None:
+    config = FusionConfig()
+    assert likely_bias(0.0, config.gyro_bias**2, config) == 0.0
+
+
+def test_a_second_of_rest_turns_a_well_calibrated_gyroscope_little_and_corrects_another() -> None:
+    """Heading errors [rad] of 10 minutes of standing a second and turning on without an encoder."""
+    good: list[float] = []
+    bad: list[float] = []
+    for seed in range(30):
+        noise = 2e-4 * np.random.default_rng(seed).standard_normal(70)
+        sigma = 2e-4 / np.sqrt(70)
+        for bias, errors in ((7.5e-6, good), (3.1e-4, bad)):
+            likely = likely_bias(bias + float(noise.mean()), sigma**2, FusionConfig())
+            errors.append(600.0 * (likely - bias))
+    measured_alone = 600.0 * 2e-4 / np.sqrt(70)
+    assert rms(good) < 0.7 * measured_alone
+    assert rms(bad) < 1.3 * measured_alone
 
 
 @given(seed=st.integers(0, 10_000), period=st.sampled_from([0.033, 0.2, 1.5]))
