@@ -194,6 +194,9 @@ class FrontierExplorer:
         self._look(grid, pose)
         if self._task is Task.EXPLORE:
             target, field = self._best_viewpoint(grid, pose)
+            if target is None and self._is_cut_off(field):
+                self._start_recovery()
+                return
             if target is None and self._given_up.another_chance(2):
                 target, field = self._best_viewpoint(grid, pose)
             if target is None and self._reopen(grid, pose) and self._given_up.another_chance(3):
@@ -225,9 +228,17 @@ class FrontierExplorer:
         worth_now = self._outlook.viewpoints(field, grid, self._places, self._given_up, pose[:2])
         best = choose(worth_now, field, pose, self._target, config.decision, loyalty.times)
         loyalty.note(self._target, best, self._costmap.free_area)
-        if best is None:
+        if best is None and not self._is_cut_off(field):
             self._outlook.note_left_over(self._given_up)
         return best, field
+
+    def _is_cut_off(self, field: CostField) -> bool:
+        """Whether next to nothing of the known floor is in reach: that says nothing of frontiers.
+
+        A robot that stands where its map knows nothing, or among things that were drawn around it,
+        looks again before it gives up what it cannot reach.
+        """
+        return field.reached_area < self.config.cut_off * field.costmap.free_area
 
     def _go_home(self, grid: OccupancyGrid, pose: Pose) -> None:
         assert self._home is not None

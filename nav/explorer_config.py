@@ -50,6 +50,8 @@ class ExplorerConfig:
     home_within: float = 0.2
     """Where the start itself is closer to a wall than a path may be, the robot goes to the nearest
     place up to so far from it [m]."""
+    cut_off: float = 0.02
+    """With less than this share of the known floor in reach, the robot's own place is in doubt."""
     recoveries_per_goal: int = 2
     """Recoveries on the way to a frontier, or home, after which the gap that stopped the robot is
     closed, and the frontier given up for now."""

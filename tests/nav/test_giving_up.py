@@ -68,6 +68,22 @@ def test_a_door_that_lets_nobody_through_is_closed_and_the_other_one_taken() -> 
     assert explorer.status != RUNNING
 
 
+def test_a_robot_that_its_map_knows_nothing_around_of_waits_for_the_map_and_gives_nothing_up() -> (
+    None
+):
+    """Where it stands in the right half of a hall the map is blank for a while."""
+    hall = ["#" * 180] + ["#" + "." * 160 + "?" * 19] * 100 + ["#" * 180]
+    whole = grid_from_text("\n".join(hall))
+    blank = grid_from_text("\n".join(row[:80] + "?" * 100 for row in hall))
+    whole.redraws = blank.redraws + 1
+    explorer, pose = FrontierExplorer(), np.array([5.2, 2.5, 0.0])
+    for _ in range(60):
+        explorer.command(blank, pose, None)
+    assert explorer.status == RUNNING
+    track = drive(explorer, whole, pose, lambda pose: True)
+    assert max(place[0] for place in track) > 6.5, "it went on to the frontier"
+
+
 def test_no_way_leads_through_a_closed_gap_until_it_is_opened_again() -> None:
     grid, gaps = grid_from_text(TWO_WAYS), ClosedGaps()
     assert not gaps.reopen()
