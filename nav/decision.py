@@ -1,10 +1,11 @@
-"""Turns viewpoints into the one to drive to next: the one that shows most for the way it takes.
+"""Turns viewpoints into the one to drive to next: the one that shows most for what it takes.
 
 While there are rooms to find, a plan over what is known now is worth little: the next view changes
 it. The rule ``tour`` makes such a plan all the same, to compare with. Taking what is close first is
 what counts: what is left behind costs a way of its own.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -63,13 +64,25 @@ class DecisionConfig:
 
     rule: str = GAIN_RATE
     """``gain_rate``; or, to compare with, ``tour`` or one of GREEDY_RULES."""
-    loyalty: float = 0.4
-    """How much less the way to where the robot is going counts [m, as costs], times one less than
-    ``Loyalty`` tells: nothing until it has changed its mind in vain."""
+    settling_way: float = 0.2
+    """Way that every view counts for, however near [m, as costs]: a second of braking, looking."""
+    turning_way: float = 0.17
+    """Way that a radian of the first turn counts for [m, as costs]: at 1.2 rad/s and 0.2 m/s."""
+    most_gain: float = 6.0
+    """Area beyond which more does not count [m2]: guesses about far space are mostly wrong."""
+    loyalty: float = 0.3
+    """How much less the way to where the robot is going counts [m, as costs], times what
+    ``Loyalty`` tells: no oscillation."""
     tour: TourConfig = TourConfig()
 
     def __post_init__(self) -> None:
         """Refuse figures that decide nothing."""
+        for name in ("settling_way", "most_gain"):
+            if not getattr(self, name) > 0.0:
+                raise TestbedError(f"decision {name}: {getattr(self, name)}; must be above 0")
+        for name in ("turning_way", "loyalty"):
+            if not getattr(self, name) >= 0.0:
+                raise TestbedError(f"decision {name}: {getattr(self, name)}; must be 0 or more")
         if self.rule not in RULES:
             raise TestbedError(f"decision rule: {self.rule!r}; must be one of {', '.join(RULES)}")
 
@@ -99,12 +112,19 @@ def choose(
         return _first_of_tour(viewpoints, times, field, config.tour)
 
     def rate(viewpoint: Viewpoint) -> float:
-        way = viewpoint.cost
+        turn = _first_turn(viewpoint, pose)
+        way = config.settling_way + viewpoint.cost + config.turning_way * turn
         if current is not None and viewpoint.is_near(current):
-            way -= (loyalty - 1.0) * config.loyalty
-        return viewpoint.gain / max(way, SHORTEST_WAY)
+            way -= loyalty * config.loyalty
+        return min(viewpoint.gain, config.most_gain) / max(way, SHORTEST_WAY)
 
     return max(viewpoints, key=rate, default=None)
+
+
+def _first_turn(viewpoint: Viewpoint, pose: Pose) -> float:
+    """How far the robot would turn to face a viewpoint [rad]."""
+    x, y = viewpoint.place - pose[:2]
+    return abs(float(wrap_to_pi(math.atan2(y, x) - pose[2])))
 
 
 def _tour_times(
@@ -117,8 +137,7 @@ def _tour_times(
     """Time to each viewpoint [s], less what loyalty to the current frontier is worth."""
     times = []
     for viewpoint in viewpoints:
-        offset = viewpoint.place - pose[:2]
-        turn = abs(float(wrap_to_pi(np.arctan2(offset[1], offset[0]) - pose[2])))
+        turn = _first_turn(viewpoint, pose)
         time = tour.settling_time + viewpoint.cost / tour.speed + turn / tour.turn_speed
         if current is not None and viewpoint.is_near(current):
             time = max(time - loyalty * tour.loyalty, tour.least_time)

@@ -1,5 +1,7 @@
 """Deciding, giving up, recovering, noticing lost headway: the explorer's smaller parts."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -62,6 +64,16 @@ def test_four_times_as_much_is_worth_three_times_the_way_and_not_five_times() ->
     assert choice(near, viewpoint_at(9.9, 5.0, 40.0)) is not near
 
 
+def test_of_two_equals_the_one_ahead_is_chosen() -> None:
+    ahead, behind = viewpoint_at(7.0, 5.0, gain=1.0), viewpoint_at(3.0, 5.0, gain=1.0)
+    assert choice(behind, ahead) is ahead
+
+
+def test_more_than_can_be_known_of_far_space_counts_no_more() -> None:
+    near, far = viewpoint_at(6.0, 5.0, gain=6.0), viewpoint_at(8.0, 5.0, gain=60.0)
+    assert choice(far, near) is near
+
+
 def test_on_a_tour_much_to_see_far_off_waits_for_a_crumb_on_the_way() -> None:
     crumb, room = viewpoint_at(6.0, 5.0, 0.3), viewpoint_at(9.0, 5.0, 4.0)
     assert choice(crumb, room, rule=TOUR) is crumb
@@ -92,6 +104,15 @@ def test_going_on_and_setting_out_are_no_changes_of_mind() -> None:
     for current, chosen in ((None, here), (here, here), (here, None)):
         loyalty.note(current, chosen, area=0.0)
     assert loyalty.times == 1.0
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [{"settling_way": 0.0}, {"most_gain": float("nan")}, {"turning_way": -0.1}, {"rule": "best"}],
+)
+def test_settings_that_decide_nothing_are_refused(settings: dict[str, Any]) -> None:
+    with pytest.raises(TestbedError, match=next(iter(settings))):
+        DecisionConfig(**settings)
 
 
 def test_of_no_viewpoints_none_is_chosen() -> None:
