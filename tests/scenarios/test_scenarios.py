@@ -12,8 +12,8 @@ SHORT = {"turtlebot3_world": 0, "narrow_door": 0, "dropouts": 0, "cluttered_offi
 """Pillars, a door hardly wider than the robot, a bad lidar among furniture (and a good one, to be
 compared with), chair legs: the least that tells that exploring still works; and a seed of each.
 
-Seed 0 of cluttered_office draws a lidar that measures 0.7 % too long and wheels that say so too. No
-mapper can know better, and its ``false_free`` comes out at 0.010, on this or that side of the bound.
+Seed 0 of cluttered_office draws a lidar that measures 0.7 % too long and wheels that say so too.
+No mapper can know better, and ``false_free`` comes out at 0.010, on either side of the bound.
 """
 
 ALL = [path.stem for path in sorted(SCENARIOS.glob("*.yaml"))]
