@@ -195,7 +195,7 @@ class FrontierExplorer:
         if self._task is Task.EXPLORE:
             target, field = self._best_viewpoint(grid, pose)
             if target is None and self._is_cut_off(field):
-                self._start_recovery()
+                self._start_recovery(UNREACHABLE_START)
                 return
             if target is None and self._given_up.another_chance(2):
                 target, field = self._best_viewpoint(grid, pose)

@@ -101,7 +101,7 @@ class FusionFilter:
         across, along = self._move(_bent(motion, turn), gains, variances, duration)
         if not (is_covered and wheels_tell_turns):
             return
-        turn = gyro[0] - duration * self.bias
+        turn = gyro[0] - duration * self.bias  # surprises are those of the bias as measured
         shared = scale * turn_variance  # the gyroscope's noise is in the pose and in the prediction
         correct(
             self.state,

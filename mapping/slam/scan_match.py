@@ -146,12 +146,12 @@ class ScanMatch:
             np.remainder(graph.poses[known, 2] - self._tracker.pose[2] + np.pi, 2 * np.pi) - np.pi
         )
         costs = distances / config.keyframe_distance
-        is_told = self._can_match(cloud)
-        if is_told and not cloud.looks_around:
+        can_match = self._can_match(cloud)
+        if can_match and not cloud.looks_around:
             costs = costs + turned / config.keyframe_turn
         nearest = int(np.argmin(costs))
         self._nearest = known[nearest]
-        apart = 1.0 if is_told and score < config.explained else FAR_APART
+        apart = 1.0 if can_match and score < config.explained else FAR_APART
         return bool(costs[nearest] > apart)
 
     def _can_match(self, cloud: ScanCloud) -> bool:

@@ -81,10 +81,13 @@ def test_on_a_tour_much_to_see_far_off_waits_for_a_crumb_on_the_way() -> None:
     assert choice(behind, room, rule=TOUR) is room
 
 
-def test_on_a_tour_a_slightly_better_frontier_does_not_make_the_robot_turn_back() -> None:
-    here, there = viewpoint_at(6.0, 5.0, 1.0), viewpoint_at(4.2, 5.0, 3.0)
-    assert choice(here, there, rule=TOUR) is there
-    assert choice(here, there, current=here, rule=TOUR) is here
+@pytest.mark.parametrize(("rule", "gain"), [(GAIN_RATE, 1.5), (TOUR, 3.0)])
+def test_a_slightly_better_frontier_does_not_make_the_robot_turn_back(
+    rule: str, gain: float
+) -> None:
+    here, there = viewpoint_at(6.0, 5.0, 1.0), viewpoint_at(4.2, 5.0, gain)
+    assert choice(here, there, rule=rule) is there
+    assert choice(here, there, current=here, rule=rule) is here
 
 
 def test_a_robot_that_changed_its_mind_in_vain_grows_loyal() -> None:

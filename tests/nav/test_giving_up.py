@@ -8,7 +8,7 @@ from mapping.geometry import Pose, compose
 from mapping.grid import OccupancyGrid
 from nav.closed_gaps import RADIUS, ClosedGaps
 from nav.explorer import NO_HEADWAY, FrontierExplorer
-from nav.navigator import COMPLETE, RUNNING
+from nav.navigator import COMPLETE, RUNNING, UNREACHABLE_START
 from nav.planner import CostField
 from tests.nav.grids import ROOM_WITH_UNKNOWN_EAST, costmap_of, grid_from_text
 
@@ -82,6 +82,18 @@ def test_a_robot_that_its_map_knows_nothing_around_of_waits_for_the_map_and_give
     assert explorer.status == RUNNING
     track = drive(explorer, whole, pose, lambda pose: True)
     assert max(place[0] for place in track) > 6.5, "it went on to the frontier"
+
+
+def test_a_robot_shut_in_that_sees_out_tries_to_get_free_and_then_says_so() -> None:
+    """A cage of 0.5 m whose bars let the lidar see the hall."""
+    hall = [list("#" + "." * 98 + "#") for _ in range(60)]
+    for k in range(10):
+        for row, column in ((25, 20 + k), (34, 20 + k), (25 + k, 20), (25 + k, 29)):
+            hall[row][column] = "#"
+    explorer = FrontierExplorer()
+    cage = grid_from_text("\n".join(map("".join, hall)))
+    drive(explorer, cage, np.array([1.25, 1.5, 0.0]), lambda pose: False)
+    assert explorer.status == UNREACHABLE_START
 
 
 def test_no_way_leads_through_a_closed_gap_until_it_is_opened_again() -> None:
