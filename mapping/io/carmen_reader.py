@@ -7,7 +7,7 @@ a hole in its middle would bend the map without a word.
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -32,6 +32,7 @@ from mapping.io.carmen import (
     SICK_TYPES,
     TIME_INCREMENT_PARAM,
 )
+from mapping.io.laser_codes import smallest_code
 from mapping.messages import Imu, LaserScan, Odometry, Twist
 from mapping.odometry_from_poses import odometry_from_poses
 from mapping.sensor_log import SensorLog
@@ -66,7 +67,8 @@ def read_carmen(path: str | Path) -> SensorLog:
 
     Scans come from ``FLASER`` and ``ROBOTLASER1`` lines. A reading at or beyond the laser's maximum
     means that nothing was there and becomes ``+inf``; a FLASER line does not tell the maximum, so
-    it is ``PARAM robot_front_laser_max``, but at most 81 m, above which a SICK sends codes.
+    it is ``PARAM robot_front_laser_max``, but at most 81 m, above which a SICK sends codes. Lasers
+    whose codes begin below (``laser_codes``) are found out by the readings themselves.
 
     Odometry comes from ``ODOM`` lines, or, when those are fewer than the scans, from the robot
     poses in the scans' own lines, with velocities from their differences. The lidar's pose comes
@@ -122,14 +124,15 @@ class _Lines:
         """The messages of all lines."""
         stamps = [line.stamps for line in self.lasers]
         stamps += [stamps for stamps, _ in (*self.odometry, *self.imu)]
+        lasers = _without_codes(self.lasers)
         clock = 0 if any(sensor > 0.0 for sensor, _ in stamps) else 1
         if len(self.odometry) < len(self.lasers):
-            odometry = _odometry_of_lasers(self.lasers, clock)
+            odometry = _odometry_of_lasers(lasers, clock)
         else:
             odometry = [_odometry(stamps[clock], row) for stamps, row in self.odometry]
         return SensorLog(
             source=source,
-            scans=[_scan(line, line.stamps[clock]) for line in self.lasers],
+            scans=[_scan(line, line.stamps[clock]) for line in lasers],
             odometry=odometry,
             imu=[_imu(stamps[clock], row) for stamps, row in self.imu],
             lidar_pose_base=self._lidar_pose(),
@@ -237,6 +240,18 @@ def _readings(words: Sequence[str], first: int) -> tuple[NDArray[np.float64], in
     if count < 0 or len(readings) < count:
         raise IndexError
     return readings, first + 1 + count
+
+
+def _without_codes(lines: Sequence[_LaserLine]) -> list[_LaserLine]:
+    """The lines, with codes below the maximum that was taken for a SICK's made ``+inf``."""
+    unsure = [line.ranges for line in lines if line.range_max == SICK_NO_RETURN]
+    code = smallest_code(unsure)
+    return [
+        replace(line, ranges=np.where(line.ranges >= code, np.inf, line.ranges), range_max=code)
+        if line.range_max == SICK_NO_RETURN and code < SICK_NO_RETURN
+        else line
+        for line in lines
+    ]
 
 
 def _scan(line: _LaserLine, stamp: float) -> LaserScan:

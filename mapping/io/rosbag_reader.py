@@ -53,8 +53,9 @@ def read_rosbag(
     transforms from odom to the robot. The lidar's pose on the robot comes from the transforms; a
     bag without them leaves it at zero, and a warning in the log.
 
-    Ranges mean what they mean in the message: ``+inf`` nothing there, 0.0 and NaN a failed beam. A
-    lidar mounted upside down gets angles that run backwards.
+    Ranges mean what they mean in the message: ``+inf`` nothing there, 0.0 and NaN a failed beam.
+    One at or beyond a ``range_max`` above 0 becomes ``+inf``, as drivers from before REP-117 meant
+    it. A lidar mounted upside down gets angles that run backwards.
 
     Args:
         path: A bag's folder, or one .mcap or .db3 file.
@@ -188,9 +189,12 @@ def _seconds(stamp: Any) -> float:
 
 
 def _scan(message: Any) -> LaserScan:
+    ranges = np.array(message.ranges, dtype=np.float32)
+    if message.range_max > 0.0:
+        ranges[ranges >= np.float32(message.range_max)] = np.inf
     return LaserScan(
         stamp=_seconds(message.header.stamp),
-        ranges=np.array(message.ranges, dtype=np.float32),
+        ranges=ranges,
         angle_min=float(message.angle_min),
         angle_increment=float(message.angle_increment),
         time_increment=float(message.time_increment),

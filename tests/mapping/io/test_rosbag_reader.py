@@ -179,6 +179,17 @@ def test_ranges_and_angles_keep_their_meaning(tmp_path: Path) -> None:
     read.ranges[0] = 1.0  # must be a copy of its own, not a view of the file's bytes
 
 
+def test_ranges_at_and_beyond_the_maximum_mean_that_nothing_was_there(tmp_path: Path) -> None:
+    message = scan(ranges=(3.49, 3.5, 4.5, np.nan, 0.0))
+    assert message.range_max == np.float32(3.5)
+    unknown_maximum = scan(ranges=(4.5,))
+    unknown_maximum.range_max = 0.0
+    log = bag(tmp_path, ("/scan", message), ("/scan", unknown_maximum))
+    expected = np.array([3.49, np.inf, np.inf, np.nan, 0.0], dtype=np.float32)
+    assert np.array_equal(log.scans[0].ranges, expected, equal_nan=True)
+    assert log.scans[1].ranges.tolist() == [4.5]
+
+
 def test_a_transform_that_is_not_finite_is_left_out(tmp_path: Path) -> None:
     wrong = link("base_link", "base_scan", np.nan)
     right = link("base_link", "base_scan", 0.4)
