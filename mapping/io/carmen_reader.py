@@ -33,6 +33,7 @@ from mapping.io.carmen import (
     TIME_INCREMENT_PARAM,
 )
 from mapping.io.laser_codes import smallest_code
+from mapping.io.range_limits import without_codes
 from mapping.messages import Imu, LaserScan, Odometry, Twist
 from mapping.odometry_from_poses import odometry_from_poses
 from mapping.sensor_log import SensorLog
@@ -124,7 +125,7 @@ class _Lines:
         """The messages of all lines."""
         stamps = [line.stamps for line in self.lasers]
         stamps += [stamps for stamps, _ in (*self.odometry, *self.imu)]
-        lasers = _without_codes(self.lasers)
+        lasers = _with_codes_known(self.lasers)
         clock = 0 if any(sensor > 0.0 for sensor, _ in stamps) else 1
         if len(self.odometry) < len(self.lasers):
             odometry = _odometry_of_lasers(lasers, clock)
@@ -168,10 +169,9 @@ class _Lines:
     ) -> _LaserLine:
         """A laser line whose poses and stamps begin at these words."""
         angle_min, angle_increment, range_max = geometry
-        ranges[ranges >= range_max] = np.inf
         return _LaserLine(
             stamps=_stamps(words, stamps),
-            ranges=ranges.astype(np.float32),
+            ranges=without_codes(ranges.astype(np.float32), range_max),
             angle_min=angle_min,
             angle_increment=angle_increment,
             range_max=range_max,
@@ -242,12 +242,12 @@ def _readings(words: Sequence[str], first: int) -> tuple[NDArray[np.float64], in
     return readings, first + 1 + count
 
 
-def _without_codes(lines: Sequence[_LaserLine]) -> list[_LaserLine]:
+def _with_codes_known(lines: Sequence[_LaserLine]) -> list[_LaserLine]:
     """The lines, with codes below the maximum that was taken for a SICK's made ``+inf``."""
     unsure = [line.ranges for line in lines if line.range_max == SICK_NO_RETURN]
     code = smallest_code(unsure)
     return [
-        replace(line, ranges=np.where(line.ranges >= code, np.inf, line.ranges), range_max=code)
+        replace(line, ranges=without_codes(line.ranges, code), range_max=code)
         if line.range_max == SICK_NO_RETURN and code < SICK_NO_RETURN
         else line
         for line in lines

@@ -22,6 +22,7 @@ from mapping.io.carmen import (
     TIME_INCREMENT_PARAM,
     UNKNOWN_TYPE,
 )
+from mapping.io.range_limits import hits_below_maximum
 from mapping.messages import Imu, LaserScan, Odometry
 from mapping.sensor_log import SensorLog
 
@@ -125,15 +126,10 @@ def _scan(scan: LaserScan, laser_pose: Pose, robot_pose: Pose) -> str:
 
 
 def _readings(scan: LaserScan) -> list[str]:
-    """The ranges, each with the digits that tell its float32 from every other.
-
-    A hit at exactly ``range_max`` is written a bit nearer: read back it must stay a hit.
-    """
-    ranges = np.array(scan.ranges, dtype=np.float32)
+    """The ranges, each with the digits that tell its float32 from every other."""
+    ranges = hits_below_maximum(np.asarray(scan.ranges, dtype=np.float32), scan.range_max)
     ranges[~(ranges > 0.0)] = 0.0
-    range_max = np.float32(scan.range_max)
-    beyond = np.isinf(ranges) | (ranges > range_max)
-    ranges[~beyond & (ranges == range_max)] = np.nextafter(range_max, np.float32(0.0))
+    beyond = np.isinf(ranges) | (ranges > np.float32(scan.range_max))
     words: list[str] = ranges.astype(str).tolist()
     for i in np.flatnonzero(beyond):
         words[i] = _number(scan.range_max)

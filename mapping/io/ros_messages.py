@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from mapping.geometry import Pose
 from mapping.io.map_server import MapFile
+from mapping.io.range_limits import hits_below_maximum
 from mapping.io.recorded_run import StaticFrame
 from mapping.io.ros_library import (
     IMU,
@@ -47,7 +48,7 @@ class RosMessages:
             scan_time=scan.scan_time,
             range_min=scan.range_min,
             range_max=scan.range_max,
-            ranges=np.asarray(scan.ranges, dtype=np.float32),
+            ranges=hits_below_maximum(np.asarray(scan.ranges, np.float32), scan.range_max),
             intensities=np.empty(0, dtype=np.float32),
         )
 

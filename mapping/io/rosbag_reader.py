@@ -9,6 +9,7 @@ import numpy as np
 
 from mapping.errors import TestbedError
 from mapping.geometry import Pose
+from mapping.io.range_limits import without_codes
 from mapping.io.ros_frames import FrameTree, Transform, plain_name, transform, yaw_of
 from mapping.io.ros_library import (
     IMU,
@@ -190,11 +191,9 @@ def _seconds(stamp: Any) -> float:
 
 def _scan(message: Any) -> LaserScan:
     ranges = np.array(message.ranges, dtype=np.float32)
-    if message.range_max > 0.0:
-        ranges[ranges >= np.float32(message.range_max)] = np.inf
     return LaserScan(
         stamp=_seconds(message.header.stamp),
-        ranges=ranges,
+        ranges=without_codes(ranges, message.range_max),
         angle_min=float(message.angle_min),
         angle_increment=float(message.angle_increment),
         time_increment=float(message.time_increment),
