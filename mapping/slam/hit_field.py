@@ -36,6 +36,7 @@ class HitField:
         side = 2 * self._half_cells
         self.density: NDArray[np.float32] = np.zeros((side, side, SIDES), dtype=np.float32)
         self.corner = np.zeros(2)
+        self._written: Window = (side, 0, side, 0)
 
     @property
     def center(self) -> NDArray[np.float64]:
@@ -46,7 +47,10 @@ class HitField:
         """Empty the field and lay its middle on a place ``(2,)`` [m]."""
         cells = np.round(np.asarray(center, dtype=np.float64) / self.resolution)
         self.corner = (cells - self._half_cells) * self.resolution
-        self.density[:] = 0.0
+        first_row, last_row, first_column, last_column = self._written
+        self.density[first_row:last_row, first_column:last_column] = 0.0
+        rows, columns, _ = self.density.shape
+        self._written = (rows, 0, columns, 0)
 
     def add(self, pose: ArrayLike, surface: NDArray[np.float32]) -> None:
         """Smear the walls that a scan saw into the field.
@@ -56,7 +60,14 @@ class HitField:
             surface: The walls ``(n, 5)``: x, y [m], weight and the direction that they face, points
                 a resolution apart.
         """
-        smear(self.density, self.to_cells(pose), surface, self.resolution, 1.0 / BELL_SUM)
+        cells = self.to_cells(pose)
+        written = smear(self.density, cells, surface, self.resolution, 1.0 / BELL_SUM)
+        self._written = (
+            min(self._written[0], written[0]),
+            max(self._written[1], written[1]),
+            min(self._written[2], written[2]),
+            max(self._written[3], written[3]),
+        )
 
     def maxima(self, window: Window, levels: int) -> NDArray[np.uint8]:
         """Block maxima ``(levels, rows, columns)`` of what is known in a window of the field.

@@ -38,7 +38,7 @@ def smear(
     surface: NDArray[np.float32],
     resolution: float,
     height: float,
-) -> None:
+) -> tuple[int, int, int, int]:
     """Add to ``density`` a bell of one cell's standard deviation for each point of a surface.
 
     Args:
@@ -48,8 +48,13 @@ def smear(
             where that is not known.
         resolution: Edge of a cell [m].
         height: Height of the bell of a point of weight 1.
+
+    Returns:
+        The window that was written to: first row and one past the last, first column and one past
+        the last; an empty one, the first past the last, when nothing was.
     """
     rows, columns, _ = density.shape
+    first_row, last_row, first_column, last_column = rows, 0, columns, 0
     cos, sin = math.cos(pose[2]), math.sin(pose[2])
     along = np.empty(2 * REACH + 2, dtype=np.float32)
     sides = np.empty(SIDES, dtype=np.float32)
@@ -66,6 +71,9 @@ def smear(
             UNKNOWN_SIDE,
             sides,
         )
+        first_row, last_row = min(first_row, max(bottom, 0)), max(last_row, min(top, rows))
+        first_column = min(first_column, max(left, 0))
+        last_column = max(last_column, min(right, columns))
         for k in range(2 * REACH + 2):
             along[k] = math.exp(-0.5 * (left + k - x) ** 2)
         for row in range(max(bottom, 0), min(top, rows)):
@@ -74,6 +82,7 @@ def smear(
                 bell = high * along[column - left]
                 for side in range(SIDES):
                     density[row, column, side] += bell * sides[side]
+    return first_row, last_row, first_column, last_column
 
 
 @njit(cache=True)

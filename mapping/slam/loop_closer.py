@@ -3,7 +3,8 @@
 A keyframe and its nearest fellows, laid together into one cloud, are searched for in the map made
 of keyframes that are far away along the edges but may be near in space. A place found within a
 narrow window is believed; one found far from where it was thought to be must be found again from
-another keyframe, and both must agree.
+another keyframe, and both must agree. What the walls leave open, as where along one of them it
+lies, stays as it was thought to be; far away such a place is none, for any wall would do.
 """
 
 import math
@@ -19,7 +20,7 @@ from mapping.slam.correlative_search import search_window
 from mapping.slam.keyframe_graph import Edge, KeyframeGraph, edge_between
 from mapping.slam.local_map import LocalMap, LocalMapConfig
 from mapping.slam.scan_cloud import ScanCloud
-from mapping.slam.scan_matcher import MatcherConfig, match_scan
+from mapping.slam.scan_matcher import MatcherConfig, match_scan, weighed_anew
 
 OVERLAP = 2.0
 """Views whose middles are within this share of how far a scan typically sees show enough of the
@@ -126,7 +127,7 @@ class LoopCloser:
             return []
         if shift <= self.config.sure_shift and turn <= self.config.sure_turn:
             return [self._edge(found)]
-        if found.score < self.config.far_score:
+        if found.score < self.config.far_score or self._is_open(found):
             return []
         oldest = keyframe - self.config.memory
         self._waiting = [other for other in self._waiting if other.keyframe >= oldest]
@@ -192,15 +193,17 @@ class LoopCloser:
         )
         if match.refused or match.score < self.config.least_score:
             return None
+        sigmas = np.array([shift, shift, turn]) / self.config.sigmas
+        there, covariance = weighed_anew(match, pose, np.diag(sigmas**2))
         views = graph.views[self._map.keyframes]
-        view = transform_points(compose(match.pose, inverse(pose)), graph.views[keyframe][None])
+        view = transform_points(compose(there, inverse(pose)), graph.views[keyframe][None])
         nearest = self._map.keyframes[int(np.argmin(np.hypot(*(views - view).T)))]
         return _Found(
             keyframe=keyframe,
             far=nearest,
             score=match.score,
-            pose=between(graph.poses[nearest], match.pose),
-            covariance=match.covariance + np.diag(LOOP_SIGMAS**2),
+            pose=between(graph.poses[nearest], there),
+            covariance=covariance + np.diag(LOOP_SIGMAS**2),
         )
 
     def _cloud(self, keyframe: int) -> ScanCloud:
@@ -227,6 +230,11 @@ class LoopCloser:
             weights=weights[::step].copy(),
             surface=np.zeros((0, 5), np.float32),
         )
+
+    def _is_open(self, found: _Found) -> bool:
+        """Whether it may lie anywhere along a wall: then any wall would have done."""
+        widest = np.linalg.eigvalsh(found.covariance[:2, :2])[-1]
+        return bool(math.sqrt(widest) > self.config.agree_shift)
 
     def _agree(self, earlier: _Found, later: _Found) -> bool:
         """Whether two places found move the robot's past by the same."""

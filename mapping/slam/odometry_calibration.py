@@ -47,6 +47,9 @@ class CalibrationConfig:
     nobody has measured may be ten times worse than a Burger."""
     noise_step: float = 0.05
     """How fast that is learned: relative change by a match as good, or as bad, as can be."""
+    unlearned: float = 2.0
+    """How many times as large as the filter says the errors left may be: it takes the errors of
+    matches to be independent, but along one wall they are alike."""
     wander: float = 1e-4
     """Share of the prior variance that each match gives back, as errors change with the floor."""
 
@@ -130,6 +133,27 @@ class OdometryCalibration:
             least[2], noise[2], smallest = 0.0, 1.0, SMALLEST_WITH_GYRO
         wide = noise * (np.array([ahead, max(ahead, aside), turn]) + least**2)
         return np.asarray(np.diag(wide) + smallest, dtype=np.float64)
+
+    def left(
+        self, unmatched: NDArray[np.float64], motion: Pose
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """What the errors not learned yet add to the covariance of a motion without matches.
+
+        They are the same from motion to motion, so that ways and headings go wrong in proportion
+        to the way, and not to its root as by noise: what is added is the difference of squares.
+
+        Args:
+            unmatched: Way [m] and turn [rad] made since the last match ``(2,)``.
+            motion: The odometry's motion that follows ``(3,)``.
+
+        Returns:
+            The covariance to add ``(3, 3)``, and way and turn after the motion ``(2,)``.
+        """
+        made = unmatched + (math.hypot(motion[0], motion[1]), abs(float(motion[2])))
+        way, turn = made**2 - unmatched**2
+        scale, drift, turning, _ = self.config.unlearned**2 * np.diag(self.covariance)
+        place = scale * way
+        return np.diag([place, place, drift * way + turning * turn]), made
 
     def learn(self, motion: Pose, matched: Pose, covariance: NDArray[np.float64]) -> None:
         """Compare a motion of the odometry with the same motion as matching gave it.

@@ -167,6 +167,28 @@ def match_scan(
     )
 
 
+def weighed_anew(
+    match: Match, predicted: ArrayLike, covariance: NDArray[np.float64]
+) -> tuple[Pose, NDArray[np.float64]]:
+    """What a match says against another prediction: the pose ``(3,)`` and its covariance.
+
+    A match found by a wide search was told to stay near what was found. Where the scan says
+    nothing, as along a wall, not that but what is known otherwise counts.
+
+    Args:
+        match: A match that was not refused.
+        predicted: What is known otherwise ``(3,)``.
+        covariance: How sure that is ``(3, 3)``.
+    """
+    predicted = np.asarray(predicted, dtype=np.float64)
+    told = inverse3(match.seen_covariance) - NOTHING_TOLD * np.eye(3)
+    offset = match.seen - predicted
+    offset[2] = wrap_to_pi(offset[2])
+    pose, fused, _, _ = fuse(predicted, covariance, offset, told, NOTHING_TOLD, SURPRISING)
+    pose[2] = wrap_to_pi(pose[2])
+    return pose, fused
+
+
 def _uncertainty(
     covariance: NDArray[np.float64], points: NDArray[np.float64], resolution: float
 ) -> float:

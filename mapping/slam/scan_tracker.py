@@ -59,6 +59,7 @@ class ScanTracker:
         self._has_gyro = False
         self._newest_imu = self._shoved_until = -math.inf
         self._scan_odom: Pose | None = None
+        self._unmatched = np.zeros(2)
 
     def add(self, odometry: Sequence[Odometry], imu: Sequence[Imu]) -> None:
         """Take the messages of one control period."""
@@ -104,12 +105,16 @@ class ScanTracker:
         corrected = self._calibration.corrected(motion)
         predicted = compose(self.pose, corrected)
         spread = self._calibration.widened(motion, spread, has_gyro=self._has_gyro)
+        left, self._unmatched = self._calibration.left(self._unmatched, motion)
+        spread = spread + left
         if shoved:
             spread = spread + SHOVE_COVARIANCE
         self._reckon(corrected, spread)
         covariance = carried(self.covariance, self.pose, predicted, spread)
         self.local.follow(near, view_of(predicted, cloud))
         match = match_scan(self.local.field, cloud, predicted, covariance, self._matcher)
+        if not match.refused:
+            self._unmatched = np.zeros(2)
         if not match.refused and not shoved:
             noise = covariance + match.seen_covariance
             self._calibration.learn(motion, between(self.pose, match.seen), noise)

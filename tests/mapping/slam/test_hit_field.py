@@ -48,12 +48,16 @@ def test_two_halves_of_a_walls_weight_are_the_wall() -> None:
     assert np.allclose(whole.density, halves.density, atol=1e-5)
 
 
-def test_a_cleared_field_is_empty() -> None:
+@given(poses=st.lists(st.tuples(*[st.floats(-4.0, 4.0)] * 3), min_size=1, max_size=4))
+def test_a_cleared_field_is_empty(poses: list[tuple[float, float, float]]) -> None:
     field = HitField(0.05, 2.0, 1.0)
-    field.add([1.0, 1.0, 0.0], WALL)
-    assert field.density.any()
-    field.clear([0.0, 0.0])
-    assert not field.density.any()
+    for _ in range(2):
+        field.clear([0.0, 0.0])
+        assert not field.density.any()
+        field.add([0.0, 0.0, 0.0], WALL)
+        assert field.density.any()
+        for pose in poses:
+            field.add(pose, WALL)
 
 
 def test_maxima_of_a_window_are_those_of_the_field_there() -> None:

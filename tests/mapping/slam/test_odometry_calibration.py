@@ -144,3 +144,32 @@ def test_the_noise_learned_follows_the_surprises() -> None:
     assert np.all(np.diag(narrow) >= np.diag(model))
     by_gyro = bad.widened(np.array([0.1, 0.0, 0.05]), model, has_gyro=True)
     assert by_gyro[2, 2] < wide[2, 2]
+
+
+@given(
+    ways=st.lists(st.floats(0.0, 0.5), min_size=1, max_size=20),
+    turns=st.lists(st.floats(-0.5, 0.5), min_size=1, max_size=20),
+)
+def test_errors_not_learned_yet_grow_with_the_way_and_not_with_its_root(
+    ways: list[float], turns: list[float]
+) -> None:
+    calibration = OdometryCalibration()
+    steps = [arc(way, turn) for way, turn in zip(ways, turns, strict=False)]
+    total, made = np.zeros((3, 3)), np.zeros(2)
+    for step in steps:
+        left, made = calibration.left(made, step)
+        total += left
+    way = sum(np.hypot(step[0], step[1]) for step in steps)
+    turn = sum(abs(step[2]) for step in steps)
+    assert made == pytest.approx([way, turn])
+    scale, drift, turning, _ = 2.0 * SIGMAS
+    expected = [(scale * way) ** 2, (scale * way) ** 2, (drift * way) ** 2 + (turning * turn) ** 2]
+    assert np.diag(total) == pytest.approx(expected)
+
+
+def test_a_heading_from_a_gyroscope_has_no_errors_of_wheels_left() -> None:
+    calibration = OdometryCalibration()
+    calibration.trust_heading()
+    left, _ = calibration.left(np.array([5.0, 3.0]), arc(0.2, 0.1))
+    assert left[0, 0] > 0.0
+    assert left[2, 2] == 0.0
