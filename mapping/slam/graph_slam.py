@@ -109,7 +109,7 @@ class GraphSlam(ScanMatch):
     def _metric_scale(self) -> float:
         """What a metre of the lidar is [m], by what the wheels say of the same ways."""
         config = self.config
-        difference, variance = self._tracker.way_disagreement
+        difference, variance = self.way_disagreement
         error = lidar_scale_error(
             difference, variance, config.range_noise.scale_sigma, config.metric_scale
         )

@@ -74,6 +74,11 @@ class ScanMatch:
         return self.painter.grid
 
     @property
+    def way_disagreement(self) -> tuple[float, float]:
+        """How much longer ways are by matching than by the odometry, relative; and its variance."""
+        return self._tracker.way_disagreement
+
+    @property
     def trajectory(self) -> PoseHistory:
         """Poses at the stamps of the scans, each where its keyframe is believed to be now."""
         if len(self._history) == 0:

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from mapping.geometry import Pose, between, compose
 from mapping.messages import Imu, Odometry, accelerations
-from mapping.pose_covariance import carried
+from mapping.pose_covariance import carried, turned
 from mapping.slam.fusion import FusedTrack
 from mapping.slam.keyframe_graph import KeyframeGraph, view_of
 from mapping.slam.local_map import LocalMap
@@ -105,8 +105,9 @@ class ScanTracker:
         corrected = self._calibration.corrected(motion)
         predicted = compose(self.pose, corrected)
         spread = self._calibration.widened(motion, spread, has_gyro=self._has_gyro)
-        left, self._unmatched = self._calibration.left(self._unmatched, motion)
-        spread = spread + left
+        if not self._has_gyro:
+            left, self._unmatched = self._calibration.left(self._unmatched, motion)
+            spread = spread + left
         if shoved:
             spread = spread + SHOVE_COVARIANCE
         self._reckon(corrected, spread)
@@ -116,7 +117,7 @@ class ScanTracker:
         if not match.refused:
             self._unmatched = np.zeros(2)
         if not match.refused and not shoved:
-            noise = covariance + match.seen_covariance
+            noise = turned(covariance + match.seen_covariance, -self.pose[2])
             self._calibration.learn(motion, between(self.pose, match.seen), noise)
         self.pose, self.covariance = match.pose, match.covariance
         return match.score

@@ -14,7 +14,7 @@ from mapping.mapper import Mapper
 from mapping.slam.graph_slam import GraphConfig, GraphSlam
 from mapping.slam.scan_match import ScanMatch
 from mapping.slam.scan_match_config import ScanMatchConfig
-from tests.mapping.slam.rooms import RING_WAY, Period, Run, drive, fed, mirrored, ring
+from tests.mapping.slam.rooms import RING_WAY, Period, Run, corridor, drive, fed, mirrored, ring
 
 EDGE = 0.02
 GRID = GridConfig(resolution=EDGE, origin=(-6.0, -6.0), rows=600, columns=600, grows=False)
@@ -103,6 +103,15 @@ def test_any_turn_and_shift_turns_and_shifts_the_path(
     # otherwise, and both paths have errors of up to a cell of the field
     assert np.max(np.hypot(off[:, 0], off[:, 1])) < 0.03
     assert np.max(np.abs(off[:, 2])) < 0.01
+
+
+@pytest.mark.parametrize("heading", [0.0, 0.8, np.pi / 2.0, -2.5])
+def test_a_bare_corridor_teaches_nothing_about_the_scale_of_ways(heading: float) -> None:
+    run = drive(corridor(), [(-6.0, 0.0), (6.0, 0.0)], np.random.default_rng(3))
+    mapper = fed(ScanMatch(start_pose_map=(0.0, 0.0, heading)), run.periods)
+    told, variance = mapper.way_disagreement
+    assert abs(told) < 0.002
+    assert variance == pytest.approx(ScanMatchConfig().calibration.scale_sigma ** 2, rel=0.1)
 
 
 @BOTH
