@@ -69,7 +69,8 @@ class LoopConfig:
     points: int = 500
     """The cloud is thinned to so many points."""
     agree_shift: float = 0.2
-    """Two places found agree when they differ by less than this [m]."""
+    """Two places found agree when they differ by less than this [m]; one less sure than this of
+    where it lies is none, unless it is believed at once."""
     agree_turn: float = 0.06
     """And by less than this [rad]."""
     memory: int = 15
