@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 SICK_CODES = tuple((2**bits - 9) / 1000.0 for bits in (13, 14, 15))
 """First code [m] of a SICK LMS that counts millimetres up to 8, 16 or 32 m: a reading has 13, 14 or
-15 bits, and its nine largest numbers are codes, the first of them for "farther than that". When it
-counts centimetres, codes begin at 81.83 m."""
+15 bits, and its nine largest numbers are codes, the first of them for "farther than that" (SICK,
+telegrams of the LMS 2xx). When it counts centimetres, codes begin at 81.83 m."""
 
 LAST_CODE = 0.008
 """How far above the first code the last one lies [m]."""
@@ -37,10 +37,12 @@ def smallest_code(scans: Sequence[NDArray[np.floating]]) -> float:
     readings = np.concatenate([np.empty(0), *scans])
     finite = readings[np.isfinite(readings)]
     largest = float(finite.max(initial=0.0))
+    if largest == 0.0:
+        return np.inf
     for code in SICK_CODES:
         if code - ROUNDING <= largest <= code + LAST_CODE + ROUNDING:
             return code - ROUNDING
-    share = np.count_nonzero(finite == largest) / max(len(readings), 1)
+    share = np.count_nonzero(finite == largest) / len(readings)
     if share < CODE_SHARE or sum(largest in scan for scan in scans) < CODE_SCANS:
         return np.inf
     return largest

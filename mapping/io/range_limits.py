@@ -20,4 +20,5 @@ def hits_below_maximum(ranges: NDArray[np.float32], range_max: float) -> NDArray
     Read back it must stay a hit.
     """
     maximum = np.float32(range_max)
-    return np.where(ranges == maximum, np.nextafter(maximum, np.float32(0.0)), ranges)
+    is_hit = np.isfinite(ranges) & (ranges == maximum)
+    return np.where(is_hit, np.nextafter(maximum, np.float32(0.0)), ranges)

@@ -141,8 +141,7 @@ class OdometryCalibration:
 
         They are the same from motion to motion, so that ways and headings go wrong in proportion
         to the way, and not to its root as by noise: what is added is the difference of squares.
-        With a gyroscope the heading does not, and what is left of the scale is small beside what
-        wider windows let in.
+        The scale is taken to err in any direction: the robot turns on its way.
 
         Args:
             unmatched: Way [m] and turn [rad] made since the last match ``(2,)``.

@@ -14,8 +14,9 @@ from mapping.slam.odometry_calibration import CalibrationConfig
 from mapping.slam.scan_matcher import MatcherConfig
 
 FARTHEST_POINT = 30.0
-"""Points farther away are not matched [m]: a degree of yaw moves them by ten cells. In a hall of
-35 m the end walls alone tell how far along it the robot is."""
+"""Points farther away are not matched [m] [assumption: of 15, 22, 30 and 45, it held best on the
+whole on simulated logs of a SICK]: a degree of yaw moves them by ten cells. In a hall of 35 m the
+end walls alone tell how far along it the robot is."""
 
 FINE_CELL, COARSE_CELL = 0.03, 0.05
 """Cells of the field [m] for an LDS-01 at 5 Hz, and for lidars of which nothing is known. The bells

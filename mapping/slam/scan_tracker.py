@@ -105,6 +105,7 @@ class ScanTracker:
         corrected = self._calibration.corrected(motion)
         predicted = compose(self.pose, corrected)
         spread = self._calibration.widened(motion, spread, has_gyro=self._has_gyro)
+        # a gyroscope keeps the heading, and for the scale alone windows need not be wider
         if not self._has_gyro:
             left, self._unmatched = self._calibration.left(self._unmatched, motion)
             spread = spread + left

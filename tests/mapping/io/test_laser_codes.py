@@ -29,8 +29,9 @@ def test_the_largest_numbers_of_a_sicks_modes_are_codes(readings: list[float], c
     assert smallest_code([np.array([0.5]), np.float32(readings)]) == pytest.approx(code)
 
 
-def test_a_log_without_scans_has_no_codes() -> None:
+def test_a_log_without_readings_has_no_codes() -> None:
     assert smallest_code([]) == np.inf
+    assert smallest_code([np.zeros(180, dtype=np.float32)] * 30) == np.inf
 
 
 @pytest.mark.parametrize(("scans", "code"), [(20, 20.0), (19, np.inf)])

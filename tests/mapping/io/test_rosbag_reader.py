@@ -193,6 +193,11 @@ def test_ranges_at_and_beyond_the_maximum_mean_that_nothing_was_there(tmp_path: 
     assert log.scans[1].ranges.tolist() == [4.5]
 
 
+def test_a_maximum_without_bound_makes_no_hits_of_nothing(tmp_path: Path) -> None:
+    endless = LaserScan(stamp=0.0, ranges=np.float32([np.inf, 4.5]), range_max=np.inf)
+    assert bag(tmp_path, ("/scan", MAKE.scan(0, endless))).scans[0].ranges.tolist() == [np.inf, 4.5]
+
+
 def test_a_transform_that_is_not_finite_is_left_out(tmp_path: Path) -> None:
     wrong = link("base_link", "base_scan", np.nan)
     right = link("base_link", "base_scan", 0.4)

@@ -165,11 +165,3 @@ def test_errors_not_learned_yet_grow_with_the_way_and_not_with_its_root(
     scale, drift, turning, _ = 2.0 * SIGMAS
     expected = [(scale * way) ** 2, (scale * way) ** 2, (drift * way) ** 2 + (turning * turn) ** 2]
     assert np.diag(total) == pytest.approx(expected)
-
-
-def test_a_heading_from_a_gyroscope_has_no_errors_of_wheels_left() -> None:
-    calibration = OdometryCalibration()
-    calibration.trust_heading()
-    left, _ = calibration.left(np.array([5.0, 3.0]), arc(0.2, 0.1))
-    assert left[0, 0] > 0.0
-    assert left[2, 2] == 0.0
