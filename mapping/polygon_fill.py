@@ -35,9 +35,9 @@ def lower_inside(
                 if winding != 0:
                     begin = min(max(_first_centre(at[k]), 0), columns)
                     end = min(max(_first_centre(at[k + 1]), 0), columns)
-                    for column in range(begin, end):
-                        lowered = log_odds[row, column] - amount
-                        log_odds[row, column] = lowered if lowered > lowest else lowest
+                    line = log_odds[row, begin:end]
+                    for column in range(len(line)):  # this loop runs on whole registers
+                        line[column] = max(line[column] - amount, lowest)
 
 
 @njit(cache=True)

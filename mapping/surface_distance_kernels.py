@@ -31,6 +31,9 @@ STEPS = 24
 """A cell's beam is sought among so many to one side of the one looked up: beams start apart while
 the robot moves. A Burger moves 2 cm in half a turn of its lidar, 10 beams at 12 cm."""
 
+NEAR = 50.0
+"""Nearer than so many cells a beam from elsewhere may come from any direction."""
+
 NONE = -1
 
 
@@ -64,7 +67,8 @@ def add_distances(
             deviations.
     """
     table = beams_by_direction(beams)
-    farthest = beams[:, LENGTH].max() + reach[0] + reach[1] * beams[:, SIGMA].max()
+    told = _told_of(beams, reach)
+    farthest = told.max()
     middle_x, middle_y = beams[len(beams) // 2, X], beams[len(beams) // 2, Y]
     bottom = max(math.floor((middle_y - farthest) / tile), 0)
     top = min(math.floor((middle_y + farthest) / tile) + 1, tile_shape[0])
@@ -76,6 +80,10 @@ def add_distances(
         first = starts[tile_row * tile_shape[1] + left]
         for k in range(first, starts[tile_row * tile_shape[1] + right]):
             x, y = cells[k, 1] + 0.5, cells[k, 0] + 0.5
+            dx, dy = x - middle_x, y - middle_y
+            away = dx * dx + dy * dy
+            if away > NEAR * NEAR and away > told[_bin(dx, dy)] ** 2:
+                continue  # most cells of a building lie behind what the scan saw
             i = beam_before(x, y, beams, table)
             if i == NONE:
                 continue
@@ -105,6 +113,38 @@ def beams_by_direction(beams: NDArray[np.float64]) -> NDArray[np.int32]:
                 k = k + 1 if k + 1 < BINS else 0
                 table[k] = i
     return table
+
+
+@njit(cache=True)
+def _told_of(beams: NDArray[np.float64], reach: tuple[float, float]) -> NDArray[np.float64]:
+    """How far from where the middle beam starts a scan tells of cells, at most ``(BINS,)``.
+
+    For cells farther away than ``NEAR``, in each direction; 0 where the lidar does not look. Beams
+    start apart, so one of a direction beside it may be a cell's.
+    """
+    middle = len(beams) // 2
+    apart = 0.0
+    for i in range(len(beams)):
+        dx, dy = beams[i, X] - beams[middle, X], beams[i, Y] - beams[middle, Y]
+        apart = max(apart, math.hypot(dx, dy))
+    own = np.zeros(BINS)
+    for i in range(len(beams)):
+        after = i + 1 if i + 1 < len(beams) else 0
+        k, last = _bin(beams[i, DX], beams[i, DY]), _bin(beams[after, DX], beams[after, DY])
+        sigma = max(beams[i, SIGMA], beams[after, SIGMA])
+        bound = max(beams[i, LENGTH], beams[after, LENGTH]) + reach[0] + reach[1] * sigma + apart
+        own[k] = max(own[k], bound)
+        if beams[i, PAIR] != APART or (last - k) % BINS < WIDEST_GAP:
+            while k != last:
+                k = k + 1 if k + 1 < BINS else 0
+                own[k] = max(own[k], bound)
+    turned = math.asin(min(apart / NEAR, 1.0))  # a bin is a radian's 1 / (BINS / 4), or wider
+    beside = min(int(turned * BINS / 4) + 2, BINS // 2)
+    told = own.copy()
+    for shift in range(1, beside + 1):
+        for k in range(BINS):
+            told[k] = max(told[k], max(own[k - shift], own[k + shift - BINS]))
+    return told
 
 
 @njit(cache=True)

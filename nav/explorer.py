@@ -39,6 +39,10 @@ NO_HEADWAY = "no headway on the way there"
 NO_TIME_LEFT = "not visited before the run ended"
 """Why a frontier is given up."""
 
+RIM = 4
+"""What a viewpoint would show depends on so many cells more than the lidar is counted on to see:
+on whether what it sees last is a hole in a wall."""
+
 
 class Task(Enum):
     """What the explorer is at."""
@@ -154,8 +158,7 @@ class FrontierExplorer:
         target = self._target
         if target is None:
             return
-        self._glance(grid, pose)
-        left = gain_at(self._costmap, target.place, self.config.viewpoint)
+        left = self._gain_left(grid, pose, target)
         if left > self.config.phantom_share * target.gain:
             self._given_up.disappoint(target.frontier, NOTHING_NEW)
 
@@ -169,13 +172,15 @@ class FrontierExplorer:
         if now - self._glanced_at < self.config.glance_every or self._target is None:
             return False
         self._glanced_at = now
-        self._glance(grid, pose)
-        left = gain_at(self._costmap, self._target.place, self.config.viewpoint)
+        left = self._gain_left(grid, pose, self._target)
         return left < self.config.worth_left * self._target.gain
 
-    def _glance(self, grid: OccupancyGrid, pose: Pose) -> None:
-        self._costmap.glance(grid, pose[:2], self._changed_reach())
+    def _gain_left(self, grid: OccupancyGrid, pose: Pose, target: Viewpoint) -> float:
+        """What a viewpoint would show now [m2]."""
+        around = self.config.viewpoint.gain_range + RIM * self._costmap.resolution
+        self._costmap.glance(grid, pose[:2], self._changed_reach(), target.place, around)
         self._places.returns.mark(self._costmap)
+        return gain_at(self._costmap, target.place, self.config.viewpoint)
 
     def _look(self, grid: OccupancyGrid, pose: Pose) -> None:
         self._costmap.refresh(grid, pose[:2], self._changed_reach())

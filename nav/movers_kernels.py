@@ -38,17 +38,19 @@ def seen_through(
         share: What they may err by besides, for each metre.
     """
     beams = ranges.shape[1]
+    circle = 2.0 * math.pi
     counts = np.zeros(len(points), dtype=np.int64)
-    for i in range(len(points)):
-        for j in range(len(origins)):
+    for j in range(len(origins)):
+        step = abs(increments[j])
+        around = max(1, math.floor(circle / step + 0.5))
+        for i in range(len(points)):
             dx, dy = points[i, 0] - origins[j, 0], points[i, 1] - origins[j, 1]
-            distance = math.hypot(dx, dy)
+            distance = math.sqrt(dx * dx + dy * dy)
             turn = math.atan2(dy, dx) - bearings[j]
-            step = abs(increments[j])
             if increments[j] < 0.0:
                 turn = -turn
-            around = max(1, math.floor(2.0 * math.pi / step + 0.5))
-            beam = math.floor(turn % (2.0 * math.pi) / step + 0.5)
+            turn -= circle * math.floor(turn / circle)
+            beam = math.floor(turn / step + 0.5)
             span = max(1, math.ceil(min(aside / (distance * step + SMALLEST), beams / 4.0)))
             least = distance + margin + share * distance
             counts[i] += _all_farther(ranges[j], around, beam - span, beam + span, least)
@@ -64,6 +66,11 @@ def _all_farther(
     They are counted ``around`` the circle: more than there are if the sensor turned back while it
     looked, when there is a gap between the last and the first, and fewer if it turned on.
     """
+    if first >= 0 and last < min(around, len(ranges)):  # the usual case, without remainders
+        for k in range(first, last + 1):
+            if not ranges[k] > least:
+                return False
+        return True
     for k in range(first, last + 1):
         beam = k % around
         if not (beam < len(ranges) and ranges[beam] > least):

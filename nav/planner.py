@@ -6,13 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from nav.costmap import Costmap
-from nav.planner_kernels import (
-    costs_along_tree,
-    descend,
-    shortcut_in_sight,
-    shorten,
-    spread_cost,
-)
+from nav.dijkstra_kernel import spread_cost
+from nav.planner_kernels import costs_along_tree, descend, shortcut_in_sight, shorten
 
 ESCAPE_COST = 20.0
 """Cost per metre of leaving a place too close to things; dear, so that it is left at once."""

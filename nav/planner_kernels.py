@@ -1,125 +1,15 @@
-"""The planner's inner loops: Dijkstra's search, walking back along it, pulling a path taut."""
-
-import math
+"""The planner's inner loops: walking back along a search, pulling a path taut."""
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from mapping.grid import OCCUPIED
-
 FORBIDDEN_COST = 1.0e4
 """Stands for infinity where costs are added up and subtracted again."""
-SQRT2 = math.sqrt(2.0)
 ROUNDING = 1e-3
 """Share by which a straight line may look dearer than the same way cell by cell: sampling."""
 TAUT_CELLS = 80
 """Longest straight piece that is looked for, 4 m at 5 cm: longer ones gain next to nothing."""
-
-
-@njit(cache=True)
-def spread_cost(
-    cost: NDArray[np.float32],
-    states: NDArray[np.int8],
-    start_row: int,
-    start_column: int,
-    resolution: float,
-    max_cost: float,
-    escape_radius: float,
-    escape_cost: float,
-    dearest: float,
-) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
-    """Dijkstra over eight neighbours; a step costs its length times the mean cost of its ends.
-
-    Open cells wait in buckets as wide as the cheapest step (Dial 1969; with that width no cell of a
-    bucket can make another of it cheaper, so the result is exact), which is several times faster
-    than a heap. ``dearest`` is the largest cost per metre that is not infinite.
-
-    The loop is in one piece because a kernel of its own for the step made it three times slower.
-    """
-    rows, columns = cost.shape
-    cost_to_come = np.full((rows, columns), np.inf, dtype=np.float32)
-    parents = np.full((rows, columns), -1, dtype=np.int32)
-    if not (0 <= start_row < rows and 0 <= start_column < columns):
-        return cost_to_come, parents
-    buckets = np.full(int(SQRT2 * max(escape_cost, dearest)) + 3, -1, dtype=np.int32)
-    after = np.full(rows * columns, -1, dtype=np.int32)
-    before = np.full(rows * columns, -1, dtype=np.int32)
-    slots = np.full(rows * columns, -1, dtype=np.int32)
-    start = start_row * columns + start_column
-    cost_to_come[start_row, start_column] = 0.0
-    _put(start, 0, buckets, after, before, slots)
-    open_cells, bucket = 1, 0
-    while open_cells > 0 and bucket * resolution <= max_cost:
-        index = buckets[bucket % len(buckets)]
-        if index < 0:
-            bucket += 1
-            continue
-        _take(index, buckets, after, before, slots)
-        open_cells -= 1
-        row, column = index // columns, index % columns
-        so_far = cost_to_come[row, column]
-        here = min(cost[row, column], np.float32(escape_cost))
-        for i in range(max(row - 1, 0), min(row + 2, rows)):
-            for j in range(max(column - 1, 0), min(column + 2, columns)):
-                there = cost[i, j]
-                if there == np.inf:
-                    away = np.hypot(i - start_row, j - start_column) * resolution
-                    if states[i, j] == OCCUPIED or away > escape_radius:
-                        continue
-                    there = np.float32(escape_cost)
-                elif cost[row, column] != np.inf and (
-                    cost[i, column] == np.inf or cost[row, j] == np.inf
-                ):
-                    continue  # a diagonal step must not cut the corner of a closed cell
-                steps = np.float32(SQRT2 if i != row and j != column else 1.0)
-                total = np.float32(so_far + resolution * steps * 0.5 * (here + there))
-                if total < cost_to_come[i, j]:
-                    cell = i * columns + j
-                    if slots[cell] >= 0:
-                        _take(cell, buckets, after, before, slots)
-                        open_cells -= 1
-                    cost_to_come[i, j] = total
-                    parents[i, j] = index
-                    slot = max(int(total / resolution), bucket) % len(buckets)
-                    _put(cell, slot, buckets, after, before, slots)
-                    open_cells += 1
-    return cost_to_come, parents
-
-
-@njit(cache=True)
-def _put(
-    cell: int,
-    slot: int,
-    buckets: NDArray[np.int32],
-    after: NDArray[np.int32],
-    before: NDArray[np.int32],
-    slots: NDArray[np.int32],
-) -> None:
-    """Put a cell at the head of a bucket's list and note which one it is in."""
-    head = buckets[slot]
-    after[cell], before[cell], slots[cell] = head, -1, slot
-    if head >= 0:
-        before[head] = cell
-    buckets[slot] = cell
-
-
-@njit(cache=True)
-def _take(
-    cell: int,
-    buckets: NDArray[np.int32],
-    after: NDArray[np.int32],
-    before: NDArray[np.int32],
-    slots: NDArray[np.int32],
-) -> None:
-    """Take a cell out of the list of the bucket it is in."""
-    if before[cell] >= 0:
-        after[before[cell]] = after[cell]
-    else:
-        buckets[slots[cell]] = after[cell]
-    if after[cell] >= 0:
-        before[after[cell]] = before[cell]
-    slots[cell] = -1
 
 
 @njit(cache=True)

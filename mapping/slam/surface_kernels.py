@@ -124,7 +124,8 @@ def normals_of(
             dx, dy = points[j, 0] - points[i, 0], points[j, 1] - points[i, 1]
             beams = abs(indices[j] - indices[i])
             apart = min(lengths[i], lengths[j]) * increment * beams
-            if beams > FELLOWS or math.hypot(dx, dy) > STEEPEST * apart + CLOSE:
+            widest = STEEPEST * apart + CLOSE
+            if beams > FELLOWS or dx * dx + dy * dy > widest * widest:
                 continue
             sum_x, sum_y, used = sum_x + dx, sum_y + dy, used + 1
             sum_xx, sum_xy, sum_yy = sum_xx + dx * dx, sum_xy + dx * dy, sum_yy + dy * dy
