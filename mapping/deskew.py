@@ -78,7 +78,7 @@ def poses_on(rows: deque[tuple[float, ...]], stamps: ArrayLike) -> Pose | None:
         None when a moment is not finite or lies farther than REACH_S outside of the rows.
     """
     stamps = np.asarray(stamps, dtype=np.float64)
-    if not rows or not np.all(np.isfinite(stamps)):
+    if not rows or not np.isfinite(stamps).all():
         return None
     first, last = rows[0][0], rows[-1][0]
     if stamps.size and (stamps.min() < first - REACH_S or stamps.max() > last + REACH_S):

@@ -59,6 +59,8 @@ def transform_points(pose: ArrayLike, points: ArrayLike) -> NDArray[np.float64]:
 
 def wrap_to_pi(angle: ArrayLike) -> NDArray[np.float64]:
     """The same angle [rad] in (-pi, pi]; NaN stays NaN."""
+    if isinstance(angle, float):  # a numpy scalar is one too
+        return np.asarray(_wrap_one(angle))
     angle = np.asarray(angle, dtype=np.float64)
     return np.asarray(np.pi - np.mod(np.pi - angle, 2.0 * np.pi))
 

@@ -61,7 +61,9 @@ def spread_cost(
     width = columns + 2
     price = _rimmed(cost)
     toll = price.copy()
-    _open_escape(toll, cost, states, start_row, start_column, escape_radius / resolution, escape_cost)
+    _open_escape(
+        toll, cost, states, start_row, start_column, escape_radius / resolution, escape_cost
+    )
     offsets = _offsets(width)
     halves = np.empty(NEIGHBOURS)
     for k in range(NEIGHBOURS):
@@ -103,7 +105,10 @@ def spread_cost(
                 continue
             if is_open and price[other] != np.inf and k in (0, 2, 5, 7):
                 beside, beyond = (1, 3 if k == 0 else 4) if k < 3 else (6, 3 if k == 5 else 4)
-                if price[cell + offsets[beside]] == np.inf or price[cell + offsets[beyond]] == np.inf:
+                if (
+                    price[cell + offsets[beside]] == np.inf
+                    or price[cell + offsets[beyond]] == np.inf
+                ):
                     continue  # a diagonal step must not cut the corner of a closed cell
             to_come[other], steps[other] = total, k
             into = max(int(total / resolution), bucket) & (ring - 1)

@@ -1,5 +1,6 @@
 """Turns a costmap into frontiers: connected borders between free and unknown (Yamauchi 1997)."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -39,6 +40,10 @@ class Frontier:
     """Its cell nearest to its centroid, ``(2,)`` as (x, y) [m]."""
     size: float
     """Its length, counted as cells times their edge [m]."""
+
+    def distance_to(self, place: NDArray[np.float64]) -> float:
+        """How far its middle is from a place ``(2,)`` [m]."""
+        return math.hypot(self.middle[0] - place[0], self.middle[1] - place[1])
 
 
 def find_frontiers(

@@ -3,8 +3,6 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from nav.frontier import Frontier
 from nav.navigator import DroppedFrontier
 
@@ -82,6 +80,6 @@ class GivenUp:
 
     def _find(self, frontier: Frontier) -> _Record | None:
         for record in self._records:
-            if np.hypot(*(record.frontier.middle - frontier.middle)) < SAME_PLACE:
+            if record.frontier.distance_to(frontier.middle) < SAME_PLACE:
                 return record
         return None

@@ -66,13 +66,9 @@ def _all_farther(
     They are counted ``around`` the circle: more than there are if the sensor turned back while it
     looked, when there is a gap between the last and the first, and fewer if it turned on.
     """
-    if first >= 0 and last < min(around, len(ranges)):  # the usual case, without remainders
-        for k in range(first, last + 1):
-            if not ranges[k] > least:
-                return False
-        return True
+    goes_round = first < 0 or last >= around  # seldom, and remainders are slow
     for k in range(first, last + 1):
-        beam = k % around
+        beam = k % around if goes_round else k
         if not (beam < len(ranges) and ranges[beam] > least):
             return False
     return True

@@ -82,7 +82,7 @@ class PutOff:
     def _waits(self, item: Viewpoint) -> bool:
         """Whether a frontier was put off before and has not grown much since."""
         return any(
-            float(np.hypot(*(item.frontier.middle - middle))) < SAME_FRONTIER
+            item.frontier.distance_to(middle) < SAME_FRONTIER
             and item.gain <= self.config.grown * gain
             for middle, gain in self._waiting
         )

@@ -118,6 +118,6 @@ def _cells(costmap: Costmap, view: ScanView, straight_gap: float) -> NDArray[np.
         NO_WAY_THROUGH,
         straight_gap,
         (float(costmap.origin[0]), float(costmap.origin[1]), costmap.resolution),
+        costmap.states.shape,
     )
-    inside = np.all((cells >= 0) & (cells < costmap.states.shape), axis=1)
-    return np.asarray(cells[inside])
+    return np.asarray(cells)

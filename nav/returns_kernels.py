@@ -22,6 +22,7 @@ def cells_between(
     gap: float,
     straight_gap: float,
     lattice: tuple[float, float, float],
+    shape: tuple[int, int],
 ) -> NDArray[np.int64]:
     """The cells ``(m, 2)`` as (row, column) of points, and of the lines between neighbours.
 
@@ -37,6 +38,7 @@ def cells_between(
         gap: How far apart neighbours may lie [m].
         straight_gap: The same where the wall is straight [m], ``gap`` or more.
         lattice: The cells' origin x, y and their edge [m].
+        shape: Rows and columns; cells outside are left out.
     """
     left, bottom, edge = lattice
     most = 1 + math.ceil(2.0 * straight_gap / edge)
@@ -59,9 +61,11 @@ def cells_between(
         ):
             steps = max(1, math.ceil(2.0 * length / edge))
         for k in range(steps):
-            cells[filled, 0] = math.floor((points[i, 1] + k / steps * dy - bottom) / edge)
-            cells[filled, 1] = math.floor((points[i, 0] + k / steps * dx - left) / edge)
-            filled += 1
+            row = math.floor((points[i, 1] + k / steps * dy - bottom) / edge)
+            column = math.floor((points[i, 0] + k / steps * dx - left) / edge)
+            if 0 <= row < shape[0] and 0 <= column < shape[1]:
+                cells[filled, 0], cells[filled, 1] = row, column
+                filled += 1
     return cells[:filled]
 
 

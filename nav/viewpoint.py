@@ -64,8 +64,7 @@ class Viewpoint:
 
     def is_near(self, other: "Viewpoint") -> bool:
         """Whether both show the same frontier, which may have grown or shrunk in between."""
-        apart = self.frontier.middle - other.frontier.middle
-        return bool(np.hypot(apart[0], apart[1]) < SAME_FRONTIER)
+        return self.frontier.distance_to(other.frontier.middle) < SAME_FRONTIER
 
 
 SAME_FRONTIER = 0.6
@@ -106,7 +105,7 @@ class ViewpointFinder:
         per_metre = self.config.min_share_per_metre * field.costmap.free_area
         for frontier in frontiers:
             key = self._key(frontier)
-            is_far = np.hypot(*(frontier.middle - robot)) > self.config.keep_beyond
+            is_far = frontier.distance_to(robot) > self.config.keep_beyond
             places = kept.get(key) if is_far else None
             self._kept[key] = places = (
                 self._places(field, frontier, visited) if places is None else places

@@ -64,7 +64,7 @@ class MapPainter:
             self._drawn = self._extended(self._drawn, self._drawn_scale)
             off = between(self._drawn, self.corrected(self._graph.poses))
             errors = np.hypot(off[:, 0], off[:, 1]) + ARM * np.abs(off[:, 2])
-            self._error, self._error_state = float(np.max(errors, initial=0.0)), state
+            self._error, self._error_state = float(errors.max(initial=0.0)), state
         return self._error
 
     @property

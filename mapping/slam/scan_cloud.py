@@ -70,7 +70,7 @@ def make_cloud(
     weights = np.minimum(1.0, (resolution / range_sigma(lengths, range_noise)) ** 2)
     increment = abs(scan.angle_increment)
     normals = normals_of(ends, lengths, indices, increment)
-    loose = weights * np.where(np.any(normals != 0.0, axis=1), 1.0, LOOSE_WORTH)
+    loose = weights * np.where((normals != 0.0).any(axis=1), 1.0, LOOSE_WORTH)
     return ScanCloud(
         points=ends,
         normals=normals,

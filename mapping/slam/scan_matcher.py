@@ -141,7 +141,7 @@ def match_scan(
         field.outlier,
         config.least_curvature,
     )
-    if score < config.least_score or not np.any(curvature):
+    if score < config.least_score or not curvature.any():
         return replace(refused, score=score)
     seen = field.to_metres(pose)
     per_metre = np.outer(1.0 / scale, 1.0 / scale)
@@ -193,7 +193,7 @@ def _uncertainty(
     covariance: NDArray[np.float64], points: NDArray[np.float64], resolution: float
 ) -> float:
     """Standard deviation [cells] of where a typical beam ends."""
-    arm = float(np.mean(np.hypot(points[:, 0], points[:, 1])))
+    arm = float(np.hypot(points[:, 0], points[:, 1]).mean())
     along = 0.5 * (covariance[0, 0] + covariance[1, 1]) / resolution**2
     return math.sqrt(along + arm**2 * covariance[2, 2])
 

@@ -75,8 +75,8 @@ class ScanTracker:
         if len(rows) == 0:
             return
         self._newest_imu = float(rows[-1, 0])
-        hard = np.hypot(rows[:, 1], rows[:, 2]) > SHOVE_ACCELERATION
-        if np.any(hard):
+        hard = rows[:, 1] ** 2 + rows[:, 2] ** 2 > SHOVE_ACCELERATION**2
+        if hard.any():
             self._shoved_until = float(rows[hard, 0].max()) + SHOVE_TIME
 
     def poses_at(self, stamps: ArrayLike) -> Pose | None:

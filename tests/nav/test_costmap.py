@@ -122,8 +122,26 @@ def test_an_inflation_inside_the_robot_is_refused() -> None:
 def test_a_map_drawn_anew_is_taken_over_whole_wherever_the_robot_is() -> None:
     before, after = random_grid(1), random_grid(2)
     after.redraws = 1
-    for look in (Costmap.refresh, Costmap.glance):
-        costmap = costmap_of(before)
-        look(costmap, after, (0.1, 0.1), 0.2)
+    refreshed, glanced = costmap_of(before), costmap_of(before)
+    refreshed.refresh(after, (0.1, 0.1), 0.2)
+    glanced.glance(after, (0.1, 0.1), 0.2, (0.9, 0.9), 0.1)
+    for costmap in (refreshed, glanced):
         assert np.array_equal(costmap.states, costmap_of(after).states)
         assert np.array_equal(costmap.cost, costmap_of(after).cost)
+
+
+def test_a_glance_takes_over_states_where_the_map_changed_and_somebody_looks() -> None:
+    before, after = random_grid(1), random_grid(2)
+    costmap = costmap_of(before)
+    old, new = costmap.states.copy(), costmap_of(after).states
+    changed, seen = np.array([0.3, 0.4]), np.array([0.5, 0.3])
+    costmap.glance(after, changed, 0.2, seen, 0.15)
+    rows, columns = np.indices(old.shape)
+    middles = costmap.cell_to_world(np.stack((rows, columns), axis=-1))
+    half = 0.5 * costmap.resolution
+    is_changed = (np.abs(middles - changed) <= 0.2 + half).all(axis=-1)
+    is_seen = (np.abs(middles - seen) <= 0.15 + half).all(axis=-1)
+    assert 0 < (is_changed & is_seen & (old != new)).sum() < (old != new).sum()
+    assert np.array_equal(costmap.states, np.where(is_changed & is_seen, new, old))
+    costmap.glance(before, changed, 0.1, changed + 0.5, 0.1)
+    assert np.array_equal(costmap.states, np.where(is_changed & is_seen, new, old)), "far apart"

@@ -11,6 +11,7 @@ from nav.returns_kernels import STRAIGHT, SUPPORT, SUPPORT_BEAMS, cells_between
 
 GAP, STRAIGHT_GAP = 0.25, 0.6
 LATTICE = (-2.0, -1.0, 0.05)
+SHAPE = (60, 140)
 
 Cells = set[tuple[int, int]]
 
@@ -52,12 +53,14 @@ def plain_cells(points: NDArray[np.float64], beams: list[int], count: int) -> Ce
             continue
         parts = max(1, math.ceil(2.0 * math.dist(point, after) / LATTICE[2]))
         cells |= {cell_of(point + k / parts * (after - point)) for k in range(parts)}
-    return cells
+    return {
+        (row, column) for row, column in cells if 0 <= row < SHAPE[0] and 0 <= column < SHAPE[1]
+    }
 
 
 def found_cells(points: NDArray[np.float64], beams: list[int], count: int) -> Cells:
     cells = cells_between(
-        points, np.array(beams, dtype=np.int64), count, GAP, STRAIGHT_GAP, LATTICE
+        points, np.array(beams, dtype=np.int64), count, GAP, STRAIGHT_GAP, LATTICE, SHAPE
     )
     return {(int(row), int(column)) for row, column in cells}
 
@@ -65,7 +68,8 @@ def found_cells(points: NDArray[np.float64], beams: list[int], count: int) -> Ce
 @given(seed=st.integers(0, 10_000), kept=st.integers(0, 60))
 @settings(max_examples=60)
 def test_they_equal_those_of_a_plain_walk(seed: int, kept: int) -> None:
-    """A closed wall round the lattice's corner: neighbours 5 to 60 cm apart, some beams gone."""
+    """A closed wall round the lattice's corner: neighbours 5 to 60 cm apart, some beams gone, some
+    points outside."""
     rng = np.random.default_rng(seed)
     beams = sorted(rng.choice(60, kept, replace=False).tolist())
     angles = 2.0 * np.pi * np.array(beams) / 60.0
@@ -79,7 +83,9 @@ def test_no_cell_of_a_line_is_jumped_over(angle: float, length: float) -> None:
     """From cell to cell it goes at most to a diagonal neighbour."""
     start = np.array([0.013, 0.027])
     end = start + length * np.array([math.cos(angle), math.sin(angle)])
-    cells = cells_between(np.array([start, end]), np.array([4, 5]), 360, GAP, STRAIGHT_GAP, LATTICE)
+    cells = cells_between(
+        np.array([start, end]), np.array([4, 5]), 360, GAP, STRAIGHT_GAP, LATTICE, SHAPE
+    )
     assert tuple(cells[0]) == cell_of(start)
     assert tuple(cells[-1]) == cell_of(end)
     assert np.abs(np.diff(cells, axis=0)).max() <= 1
