@@ -19,8 +19,11 @@ class CoverageMeter:
 
     def __init__(self, truth: TruthMap) -> None:
         self._truth = truth
-        self._total = int(np.count_nonzero(truth.visible_free))
         rows, columns = truth.shape
+        padded = np.pad(truth.visible_free, ((0, -rows % TILE), (0, -columns % TILE)))
+        tiles = padded.reshape(padded.shape[0] // TILE, TILE, padded.shape[1] // TILE, TILE)
+        self._visible_free = tiles.sum(axis=(1, 3))
+        self._total = int(self._visible_free.sum())
         self._known_free = np.zeros((-(-rows // TILE), -(-columns // TILE)), dtype=np.int64)
         self._redraws = 0
 
@@ -52,6 +55,7 @@ class CoverageMeter:
             columns,
             tiles,
             free_below,
+            self._visible_free,
             self._known_free,
         )
         return float(self._known_free.sum() / self._total)
@@ -90,9 +94,10 @@ def _count(
     map_columns: NDArray[np.int64],
     tiles: tuple[int, int, int, int],
     free_below: np.float32,
+    most: NDArray[np.int64],
     known_free: NDArray[np.int64],
 ) -> None:
-    """Count anew, for some tiles, the visible free cells that the map calls free."""
+    """Count anew, for some tiles, the visible free cells that the map calls free, ``most`` each."""
     rows, columns = visible_free.shape
     first_row, last_row, first_column, last_column = tiles
     known_free[first_row:last_row, first_column:last_column] = 0
@@ -101,6 +106,8 @@ def _count(
         if map_row < 0:
             continue
         for tile in range(first_column, last_column):
+            if most[row // TILE, tile] == 0:
+                continue
             first, last = tile * TILE, min((tile + 1) * TILE, columns)
             if map_columns[first] >= 0 and map_columns[last - 1] - map_columns[first] == (
                 last - 1 - first

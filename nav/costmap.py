@@ -51,6 +51,8 @@ class Costmap:
         self.resolution = self.config.resolution
         self.origin = np.zeros(2)
         self.states: NDArray[np.int8] = np.full((0, 0), UNKNOWN, dtype=np.int8)
+        """As the map has them where it was looked at last, and as others have marked them."""
+        self._pooled = self.states.copy()
         self.clearance: NDArray[np.float32] = np.zeros((0, 0), dtype=np.float32)
         self.cost: NDArray[np.float32] = np.zeros((0, 0), dtype=np.float32)
         self._redraws = 0
@@ -88,14 +90,13 @@ class Costmap:
         if window[0] < window[1] and window[2] < window[3]:
             self._pool(grid, window)
 
-    def with_states_of(self, grid: OccupancyGrid) -> "Costmap":
-        """The same with the map's own states everywhere, whatever was marked on this one's.
+    def without_marks(self) -> "Costmap":
+        """The same with the map's own states, whatever was marked on this one's.
 
         Clearance and cost are shared, not copied.
         """
         other = copy.copy(self)
-        other.states = np.empty_like(self.states)
-        other._pool(grid, (0, self.states.shape[0], 0, self.states.shape[1]))
+        other.states = self._pooled.copy()
         return other
 
     def refresh(
@@ -155,6 +156,7 @@ class Costmap:
         self.origin = grid.origin.copy()
         self._redraws = grid.redraws
         self.states = np.full(shape, UNKNOWN, dtype=np.int8)
+        self._pooled = self.states.copy()
         self.clearance = np.full(shape, self.config.inflation, dtype=np.float32)
         self.cost = np.full(shape, np.inf, dtype=np.float32)
 
@@ -177,8 +179,10 @@ class Costmap:
             factor,
             int(np.ceil(self.config.known_share * factor**2)),
             window,
-            self.states,
+            self._pooled,
         )
+        top, bottom, left, right = window
+        self.states[top:bottom, left:right] = self._pooled[top:bottom, left:right]
 
     def _measure(self, grid: OccupancyGrid, window: Window) -> None:
         """Clearance and cost of the window and of what lies within its reach."""

@@ -198,14 +198,14 @@ class FrontierExplorer:
         self._decided_at = self._glanced_at = self._driver.time
         self._look(grid, pose)
         if self._task is Task.EXPLORE:
-            target, field = self._best_viewpoint(grid, pose)
+            target, field = self._best_viewpoint(pose)
             if target is None and self._is_cut_off(field):
                 self._start_recovery(UNREACHABLE_START)
                 return
             if target is None and self._given_up.another_chance(2):
-                target, field = self._best_viewpoint(grid, pose)
+                target, field = self._best_viewpoint(pose)
             if target is None and self._reopen(grid, pose) and self._given_up.another_chance(3):
-                target, field = self._best_viewpoint(grid, pose)
+                target, field = self._best_viewpoint(pose)
             if target is not None:
                 self._set_out(field, target.place, target)
                 return
@@ -224,13 +224,11 @@ class FrontierExplorer:
         self._places.mark(self._costmap, grid, pose[:2])
         return True
 
-    def _best_viewpoint(
-        self, grid: OccupancyGrid, pose: Pose
-    ) -> tuple[Viewpoint | None, CostField]:
+    def _best_viewpoint(self, pose: Pose) -> tuple[Viewpoint | None, CostField]:
         """Where to go next, and the cost field from here."""
         config, loyalty = self.config, self._loyalty
         field = CostField.around(self._costmap, pose[:2])
-        worth_now = self._outlook.viewpoints(field, grid, self._places, self._given_up, pose[:2])
+        worth_now = self._outlook.viewpoints(field, self._places, self._given_up, pose[:2])
         best = choose(worth_now, field, pose, self._target, config.decision, loyalty.times)
         loyalty.note(self._target, best, self._costmap.free_area)
         if best is None and not self._is_cut_off(field):

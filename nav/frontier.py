@@ -2,17 +2,15 @@
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from mapping.errors import TestbedError
 from nav.costmap import Costmap
 from nav.former_walls import FormerWalls
-from nav.frontier_kernels import mark_frontier
-
-EIGHT_CONNECTED = np.ones((3, 3), dtype=np.int8)
+from nav.frontier_kernels import mark_frontier, take_pieces
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -49,7 +47,7 @@ class Frontier:
 def find_frontiers(
     costmap: Costmap, config: FrontierConfig, former_walls: FormerWalls | None = None
 ) -> list[Frontier]:
-    """Every frontier of at least ``min_cells`` cells, in the order of their labels.
+    """Every frontier of at least ``min_cells`` cells, in the order of their first cells.
 
     Args:
         costmap: Where to look.
@@ -59,13 +57,13 @@ def find_frontiers(
     marked = mark_frontier(costmap.states, config.beside_walls)
     if former_walls is not None:
         former_walls.unmark(costmap, marked)
-    labels, _ = ndimage.label(marked, structure=EIGHT_CONNECTED)
+    cells_of_all, starts = take_pieces(marked)
     frontiers = []
-    for index, box in enumerate(ndimage.find_objects(labels), start=1):
-        cells = np.argwhere(labels[box] == index) + [box[0].start, box[1].start]
-        if len(cells) < config.min_cells:
+    for begin, end in pairwise(starts.tolist()):
+        if end - begin < config.min_cells:
             continue
-        nearest = np.argmin(np.sum((cells - cells.mean(axis=0)) ** 2, axis=1))
+        cells = cells_of_all[begin:end]
+        nearest = np.argmin(((cells - cells.mean(axis=0)) ** 2).sum(axis=1))
         frontiers.append(
             Frontier(
                 cells=cells,

@@ -29,6 +29,56 @@ def mark_frontier(states: NDArray[np.int8], beside_walls: bool) -> NDArray[np.in
 
 
 @njit(cache=True)
+def take_pieces(marked: NDArray[np.int8]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """The marked cells, sorted into pieces that hang together by eight neighbours; unmarks them.
+
+    Returns:
+        The cells ``(n, 2)`` as (row, column), piece by piece, the pieces in the order of their
+        first cells row by row, as are a piece's own; and where each piece begins ``(pieces + 1,)``.
+    """
+    rows, columns = marked.shape
+    found = np.empty(np.count_nonzero(marked), dtype=np.int64)
+    starts = np.zeros(len(found) + 1, dtype=np.int64)
+    count = pieces = 0
+    for row in range(rows):
+        for column in range(columns):
+            if not marked[row, column]:
+                continue
+            marked[row, column] = 0
+            found[count] = row * columns + column
+            first, looked_at, count = count, count, count + 1
+            while looked_at < count:
+                here_row, here_column = found[looked_at] // columns, found[looked_at] % columns
+                looked_at += 1
+                for i in range(max(here_row - 1, 0), min(here_row + 2, rows)):
+                    for j in range(max(here_column - 1, 0), min(here_column + 2, columns)):
+                        if marked[i, j]:
+                            marked[i, j] = 0
+                            found[count] = i * columns + j
+                            count += 1
+            found[first:count].sort()
+            pieces += 1
+            starts[pieces] = count
+    cells = np.empty((count, 2), dtype=np.int64)
+    for k in range(count):
+        cells[k, 0], cells[k, 1] = found[k] // columns, found[k] % columns
+    return cells, starts[: pieces + 1]
+
+
+@njit(cache=True)
+def any_near(marked: NDArray[np.bool_], cells: NDArray[np.int64], reach: int) -> bool:
+    """Whether a marked cell lies within ``reach`` rows and columns of one of ``(n, 2)`` cells."""
+    rows, columns = marked.shape
+    for k in range(len(cells)):
+        row, column = cells[k, 0], cells[k, 1]
+        for i in range(max(row - reach, 0), min(row + reach + 1, rows)):
+            for j in range(max(column - reach, 0), min(column + reach + 1, columns)):
+                if marked[i, j]:
+                    return True
+    return False
+
+
+@njit(cache=True)
 def touches_occupied(states: NDArray[np.int8], row: int, column: int) -> bool:
     """Whether a cell or one of its eight neighbours is occupied."""
     rows, columns = states.shape

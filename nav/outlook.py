@@ -10,12 +10,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage
 
-from mapping.grid import OccupancyGrid
 from nav.costmap import Costmap
 from nav.explorer_config import ExplorerConfig
-from nav.frontier import EIGHT_CONNECTED, Frontier, find_frontiers
+from nav.frontier import Frontier, find_frontiers
+from nav.frontier_kernels import any_near
 from nav.given_up import GivenUp
 from nav.place_memory import PlaceMemory
 from nav.planner import CostField
@@ -54,7 +53,6 @@ class Outlook:
     def viewpoints(
         self,
         field: CostField,
-        grid: OccupancyGrid,
         places: PlaceMemory,
         given_up: GivenUp,
         robot: NDArray[np.float64],
@@ -63,7 +61,6 @@ class Outlook:
 
         Args:
             field: What it costs to come to each place, on the costmap with all that is remembered.
-            grid: The map that the costmap was made of.
             places: What is remembered of places.
             given_up: Frontiers that are left alone.
             robot: Where the robot is ``(2,)`` [m].
@@ -82,7 +79,7 @@ class Outlook:
         now = self._put_off.worth_now(found, costmap.free_area)
         if not self._put_off.is_over:
             return now
-        fresh = costmap.with_states_of(grid)
+        fresh = costmap.without_marks()
         places.mark_sure(fresh)
         openings = find_frontiers(fresh, config.opening, places.former_walls)
         openings = _apart_from(self.frontiers, openings, fresh)
@@ -111,5 +108,4 @@ def _apart_from(
     taken = np.zeros(costmap.states.shape, dtype=np.bool_)
     for frontier in frontiers:
         taken[frontier.cells[:, 0], frontier.cells[:, 1]] = True
-    taken = ndimage.binary_dilation(taken, structure=EIGHT_CONNECTED, iterations=BESIDE)
-    return [item for item in openings if not taken[item.cells[:, 0], item.cells[:, 1]].any()]
+    return [item for item in openings if not any_near(taken, item.cells, BESIDE)]

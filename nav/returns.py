@@ -8,10 +8,10 @@ unknown looks like a way on. Returns in the same planning cell in two scans say 
 import numpy as np
 from numpy.typing import NDArray
 
-from mapping.grid import OCCUPIED, UNKNOWN, OccupancyGrid
+from mapping.grid import OCCUPIED, OccupancyGrid
 from nav.cell_memory import CellMemory
 from nav.costmap import Costmap
-from nav.returns_kernels import cells_between
+from nav.returns_kernels import cells_between, wall_in_unknown
 from nav.scan_points import ScanView
 
 NO_WAY_THROUGH = 0.2
@@ -70,13 +70,8 @@ class Returns:
                 be a narrow door in it.
         """
         again = (self._sure if sure else self._likely).again(costmap)
-        unknown = costmap.states == UNKNOWN
-        edge = unknown.copy()
-        edge[1:] |= unknown[:-1]
-        edge[:-1] |= unknown[1:]
-        edge[:, 1:] |= unknown[:, :-1]
-        edge[:, :-1] |= unknown[:, 1:]
-        costmap.states[again & edge] = OCCUPIED
+        rows, columns = wall_in_unknown(costmap.states, again).T
+        costmap.states[rows, columns] = OCCUPIED
 
 
 class _Twice:

@@ -1,10 +1,12 @@
-"""The inner loops of remembering returns: the cells that they lie in, and those between them."""
+"""The inner loops of remembering returns: the cells of them and between them, and what is wall."""
 
 import math
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
+
+from mapping.grid import UNKNOWN
 
 SUPPORT = 0.5
 """How long a straight piece of wall must be to be drawn on across a gap, as a share of the gap."""
@@ -96,3 +98,23 @@ def _leads_on(
             return True
         last = point
     return False
+
+
+@njit(cache=True)
+def wall_in_unknown(states: NDArray[np.int8], returned: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """The cells ``(n, 2)`` with returns that are unknown or have an unknown neighbour of four."""
+    rows, columns = states.shape
+    cells = np.empty((np.count_nonzero(returned), 2), dtype=np.int64)
+    count = 0
+    for i in range(rows):
+        for j in range(columns):
+            if returned[i, j] and (
+                states[i, j] == UNKNOWN
+                or (i > 0 and states[i - 1, j] == UNKNOWN)
+                or (i < rows - 1 and states[i + 1, j] == UNKNOWN)
+                or (j > 0 and states[i, j - 1] == UNKNOWN)
+                or (j < columns - 1 and states[i, j + 1] == UNKNOWN)
+            ):
+                cells[count, 0], cells[count, 1] = i, j
+                count += 1
+    return cells[:count]

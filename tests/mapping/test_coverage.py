@@ -12,6 +12,7 @@ from mapping.truth import TruthMap
 def random_truth(rng: np.random.Generator) -> TruthMap:
     occupied = rng.random((150, 130)) < 0.2
     visible = ~occupied & (rng.random(occupied.shape) < 0.8)
+    visible[64:128, :64] = False
     return TruthMap(
         resolution=0.05,
         origin=(-1.0, 0.5),

@@ -23,8 +23,8 @@ from mapping.surface_distance_kernels import (
     beams_by_direction,
 )
 
-SIDE, TILE = 60, 16
-TILE_SHAPE = (4, 4)
+SIDE, TILE = 208, 16
+TILE_SHAPE = (13, 13)
 REACH = (2.5, 1.0)
 
 Array = NDArray[np.float64]
@@ -39,7 +39,7 @@ def random_beams(rng: np.random.Generator, count: int, drift: float) -> Array:
     beams[:, X] = SIDE / 2 + rng.uniform(-1.0, 1.0) + way * np.cos(heading)
     beams[:, Y] = SIDE / 2 + rng.uniform(-1.0, 1.0) + way * np.sin(heading)
     beams[:, DX], beams[:, DY] = np.cos(angles), np.sin(angles)
-    beams[:, LENGTH] = rng.uniform(12.0, 28.0, count)
+    beams[:, LENGTH] = rng.uniform(12.0, 95.0, count)
     beams[:, SIGMA] = 0.02 * beams[:, LENGTH]
     beams[:, HIT] = rng.random(count) < 0.8
     beams[:, PAIR] = rng.choice([APART, DISAGREE, AGREE], count, p=[0.1, 0.3, 0.6])

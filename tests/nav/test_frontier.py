@@ -4,11 +4,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy import ndimage
 
 from mapping.grid import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
 from nav.former_walls import FormerWalls
 from nav.frontier import FrontierConfig, find_frontiers
-from nav.frontier_kernels import mark_frontier
+from nav.frontier_kernels import any_near, mark_frontier, take_pieces
 from tests.nav.grids import ROOM_WITH_UNKNOWN_EAST, costmap_of, grid_from_text, random_grid
 
 
@@ -33,6 +34,32 @@ def test_the_marked_frontier_equals_a_plain_look_at_every_cell(
     states = costmap_of(random_grid(seed)).states
     found = mark_frontier(states, beside_walls)
     assert np.array_equal(found, plain_frontier(states, beside_walls))
+
+
+@given(seed=st.integers(0, 9_999), share=st.floats(0.0, 1.0))
+@settings(max_examples=60, deadline=None)
+def test_pieces_of_marked_cells_are_those_that_scipy_labels(seed: int, share: float) -> None:
+    rng = np.random.default_rng(seed)
+    marked = (rng.random(rng.integers(1, 25, 2)) < share).astype(np.int8)
+    labels, count = ndimage.label(marked, structure=np.ones((3, 3)))
+    cells, starts = take_pieces(marked)
+    assert not marked.any(), "taken"
+    assert len(starts) == count + 1
+    assert starts[-1] == len(cells)
+    for piece in range(count):
+        own = cells[starts[piece] : starts[piece + 1]]
+        assert np.array_equal(own, np.argwhere(labels == piece + 1))
+
+
+@given(seed=st.integers(0, 9_999), reach=st.integers(0, 4))
+@settings(max_examples=60, deadline=None)
+def test_a_mark_is_near_where_the_marks_made_wider_reach(seed: int, reach: int) -> None:
+    rng = np.random.default_rng(seed)
+    marked = rng.random((12, 17)) < 0.02
+    wide = ndimage.maximum_filter(marked, size=2 * reach + 1, mode="constant")
+    for cell in rng.integers(0, (12, 17), (20, 2)):
+        assert any_near(marked, cell[None], reach) == wide[cell[0], cell[1]]
+    assert any_near(marked, np.argwhere(wide), reach) == wide.any()
 
 
 def test_one_open_side_is_one_frontier() -> None:

@@ -7,7 +7,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from nav.returns_kernels import STRAIGHT, SUPPORT, SUPPORT_BEAMS, cells_between
+from mapping.grid import UNKNOWN
+from nav.returns_kernels import (
+    STRAIGHT,
+    SUPPORT,
+    SUPPORT_BEAMS,
+    cells_between,
+    wall_in_unknown,
+)
+from tests.nav.grids import costmap_of, random_grid
 
 GAP, STRAIGHT_GAP = 0.25, 0.6
 LATTICE = (-2.0, -1.0, 0.05)
@@ -139,3 +147,14 @@ def test_a_near_edge_is_not_joined_with_what_lies_far_behind_in_line() -> None:
     points = np.array([[1.0, 0.3], [1.0, 0.28], [1.0, 0.26], [1.0, 0.24], [1.55, 0.24]])
     cells = found_cells(points, [4, 5, 6, 7, 8], 360)
     assert cell_of(np.array([1.3, 0.24])) not in cells
+
+
+@given(seed=st.integers(0, 999))
+@settings(max_examples=30, deadline=None)
+def test_returns_are_wall_in_what_is_unknown_and_beside_it(seed: int) -> None:
+    states = costmap_of(random_grid(seed)).states
+    returned = np.random.default_rng(seed).random(states.shape) < 0.3
+    unknown = np.pad(states == UNKNOWN, 1)
+    beside = unknown[:-2, 1:-1] | unknown[2:, 1:-1] | unknown[1:-1, :-2] | unknown[1:-1, 2:]
+    expected = np.argwhere(returned & (unknown[1:-1, 1:-1] | beside))
+    assert np.array_equal(wall_in_unknown(states, returned), expected)
