@@ -74,11 +74,12 @@ def measure_clearance(
         np.float32(limit_cells * limit_cells),
         dtype=np.float32,
     )
+    across = np.empty(2 * reach + 1, dtype=np.float32)
     for row in range(max(first_row - reach, 0), min(end_row + reach, rows)):
         for column in range(max(first_column - reach, 0), min(end_column + reach, columns)):
             if states[row, column] == OCCUPIED:
                 _spread_from_cell(
-                    log_odds, occupied_above, factor, reach, row, column, window, squared
+                    log_odds, occupied_above, factor, reach, row, column, window, across, squared
                 )
     for row in range(first_row, end_row):
         for column in range(first_column, end_column):
@@ -86,7 +87,7 @@ def measure_clearance(
             clearance[row, column] = resolution * cells
 
 
-@njit(cache=True, fastmath=True)
+@njit(cache=True)
 def _spread_from_cell(
     log_odds: NDArray[np.float32],
     occupied_above: np.float32,
@@ -95,25 +96,40 @@ def _spread_from_cell(
     row: int,
     column: int,
     window: Window,
+    across: NDArray[np.float32],
     squared: NDArray[np.float32],
 ) -> None:
-    """Lower the squared clearance [cells2] around a planning cell by its bordering fine cells."""
+    """Lower the squared clearance [cells2] around a planning cell by its bordering fine cells.
+
+    Those of one fine row first make up the squared distances along the row, in ``across``, and then
+    go into every row of planning cells together.
+    """
     fine_rows, fine_columns = log_odds.shape
     first_row, end_row, first_column, end_column = window
     bottom, top = max(row - reach, first_row), min(row + reach + 1, end_row)
     left, right = max(column - reach, first_column), min(column + reach + 1, end_column)
+    if bottom >= top or left >= right:
+        return
+    across = across[: right - left]
     for i in range(row * factor, min((row + 1) * factor, fine_rows)):
+        across[:] = np.inf
+        is_border = False
         for j in range(column * factor, min((column + 1) * factor, fine_columns)):
             if log_odds[i, j] <= occupied_above or _is_inside(log_odds, occupied_above, i, j):
                 continue
+            is_border = True
             x = np.float32((j + 0.5) / factor - 0.5)
-            y = np.float32((i + 0.5) / factor - 0.5)
-            for r in range(bottom, top):
-                dy = np.float32(r) - y
-                line = squared[r - first_row]
-                for c in range(left, right):
-                    dx = np.float32(c) - x
-                    line[c - first_column] = min(line[c - first_column], dx * dx + dy * dy)
+            for c in range(len(across)):
+                dx = np.float32(left + c) - x
+                across[c] = min(across[c], dx * dx)
+        if not is_border:
+            continue
+        y = np.float32((i + 0.5) / factor - 0.5)
+        for r in range(bottom, top):
+            dy = np.float32(r) - y
+            line = squared[r - first_row, left - first_column : right - first_column]
+            for c in range(len(line)):
+                line[c] = min(line[c], across[c] + dy * dy)
 
 
 @njit(cache=True)

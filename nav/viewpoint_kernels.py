@@ -61,7 +61,6 @@ def expected_gain(
     reach: float,
     depth: float,
     beams: int,
-    gap: int = 1,
 ) -> int:
     """How many unknown cells a lidar in a cell would see, each counted once.
 
