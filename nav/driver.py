@@ -141,7 +141,7 @@ class Driver:
 
     def begin_recovery(self) -> None:
         """Back off from here and turn to the open side, after ``may_recover``."""
-        self._recovery.begin(self._pose, in_a_row=self._recoveries)
+        self._recovery.begin(self._pose, self._recoveries, self._follower.path_ahead)
 
     def _move(self, wanted: Twist) -> Twist:
         """The twist that is safe, remembered as the one to accelerate from."""

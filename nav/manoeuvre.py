@@ -1,4 +1,4 @@
-"""Plans a way out of a place where the robot cannot turn: short straight moves and small turns.
+"""Plans a way out of a place where the robot cannot turn, or through a gap: small moves and turns.
 
 The Burger's axle lies well ahead of its middle: on the spot its rear corners sweep a circle far
 wider than the gap it can drive into. What came in forwards comes out by turning a little wherever
@@ -19,6 +19,8 @@ from nav.manoeuvre_kernels import (
     BACKWARD,
     FORWARD,
     LEFT,
+    NO_MOVE,
+    RIGHT,
     bucket_points,
     occupied_near,
     search_way,
@@ -54,11 +56,13 @@ class ManoeuvreConfig:
     """Room to turn on the spot is the outline's reach, the safety layer's margin and this [m]."""
     elsewhere: float = 0.3
     """Room that is to be another than before lies so far from it [m]: beyond the robot's length."""
+    onward: float = 0.2
+    """Room on the way that the robot was to go lies so near that way [m]."""
     same_wall: float = 0.05
     """A cell of the map this close to a point of the scan is the same wall [m], and the scan knows
     better where it is."""
-    most_poses: int = 20_000
-    """The search gives up after so many poses: some 20 ms."""
+    most_poses: int = 40_000
+    """The search gives up after so many poses: some 0.1 s."""
 
     def __post_init__(self) -> None:
         """Refuse figures with which nothing is found."""
@@ -86,6 +90,13 @@ class Leg:
     way: float
     """+1 forward or counter-clockwise, -1 backward or clockwise."""
 
+    @property
+    def kind(self) -> int:
+        """The kind of its moves."""
+        if self.turns:
+            return LEFT if self.way > 0.0 else RIGHT
+        return FORWARD if self.way > 0.0 else BACKWARD
+
 
 def plan_manoeuvre(
     pose: Pose,
@@ -93,7 +104,10 @@ def plan_manoeuvre(
     grid: OccupancyGrid,
     config: ManoeuvreConfig,
     safety: SafetyConfig,
+    *,
     avoided: NDArray[np.float64] = NO_PLACES,
+    wanted: NDArray[np.float64] = NO_PLACES,
+    barred: int = NO_MOVE,
 ) -> tuple[Leg, ...]:
     """The legs to the cheapest pose from which the robot can turn on the spot; () if none is found.
 
@@ -106,6 +120,8 @@ def plan_manoeuvre(
         config: How to search.
         safety: What the safety layer will allow.
         avoided: Places ``(k, 2)`` [m] at which room was found before, and did not help.
+        wanted: Places ``(k, 2)`` [m] near one of which the way is to end, if there are any.
+        barred: The kind of move that the way must not begin with: it was tried in vain.
     """
     room = turning_radius(safety.outline) + safety.margin + config.room_reserve
     obstacles = _obstacles(pose, scan_points, grid, config.reach + room, config.same_wall)
@@ -125,6 +141,9 @@ def plan_manoeuvre(
             room,
             avoided,
             config.elsewhere,
+            wanted,
+            config.onward,
+            barred,
             config.reach,
             (config.step, config.headings),
             (config.step, config.turn_price, config.switch_price),

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +11,7 @@ from mapping.geometry import Pose
 from mapping.grid import OccupancyGrid
 from mapping.messages import Twist
 from nav.manoeuvre import NO_PLACES, Leg, ManoeuvreConfig, plan_manoeuvre
+from nav.manoeuvre_kernels import NO_MOVE
 from nav.safety import SafetyConfig
 
 
@@ -52,7 +54,7 @@ class ManoeuvreDrive:
         self._plans = 0
         self._left, self._waited = math.inf, 0.0
         self._ends: list[tuple[float, float]] = []
-        self._avoided = NO_PLACES
+        self._avoided = self._wanted = self._begin = NO_PLACES
 
     @property
     def active(self) -> bool:
@@ -64,7 +66,9 @@ class ManoeuvreDrive:
         pose: Pose,
         points: NDArray[np.float64],
         grid: OccupancyGrid,
+        *,
         elsewhere: bool = False,
+        onward: NDArray[np.float64] = NO_PLACES,
     ) -> bool:
         """Plan a way out; False if none is needed or found.
 
@@ -74,9 +78,12 @@ class ManoeuvreDrive:
             grid: The same.
             elsewhere: Whether the last manoeuvres did not help: their ends are then avoided, unless
                 there is room nowhere else. A pocket can widen again at its end.
+            onward: Places on the way that the robot was to go ``(k, 2)`` [m]: room near one of them
+                is better than any other.
         """
         self._ends = self._ends if elsewhere else []
-        self._avoided = np.array(self._ends).reshape(-1, 2)
+        self._avoided, self._wanted = np.array(self._ends).reshape(-1, 2), onward
+        self._begin = pose[None, :2].copy()
         self._plans = 0
         self._plan(pose, points, grid)
         if self._legs:
@@ -88,7 +95,9 @@ class ManoeuvreDrive:
     ) -> Twist | None:
         """The twist for the next period [s], or None when there is no more to drive."""
         if self._legs and self._is_off(pose, period):
-            self._plan(pose, points, grid)
+            in_vain = self._waited > self.config.patience
+            barred = self._legs[0].kind if in_vain else NO_MOVE
+            self._plan(pose, points, grid, barred)
         while self._legs and self._left_of(self._legs[0], pose) <= self._enough(self._legs[0]):
             self._next_leg()
         if not self._legs:
@@ -121,17 +130,33 @@ class ManoeuvreDrive:
             self._waited += period
         return beside > config.off_the_way or self._waited > config.patience
 
-    def _plan(self, pose: Pose, points: NDArray[np.float64], grid: OccupancyGrid) -> None:
+    def _plan(
+        self,
+        pose: Pose,
+        points: NDArray[np.float64],
+        grid: OccupancyGrid,
+        barred: int = NO_MOVE,
+    ) -> None:
+        """Plan on along the robot's way if there were one, else elsewhere, else anywhere."""
         self._next_leg()
         self._legs = []
         self._plans += 1
         if self._plans > self.config.most_plans:
             return
-        plan, safety = self.config.plan, self._safety
-        self._legs = list(plan_manoeuvre(pose, points, grid, plan, safety, self._avoided))
+        if len(self._wanted):
+            onward = {"wanted": self._wanted, "avoided": self._begin}
+            self._legs = self._planned(pose, points, grid, **onward, barred=barred)
+            self._wanted = self._wanted if self._legs else NO_PLACES
         if not self._legs and len(self._avoided):
-            self._avoided = NO_PLACES
-            self._legs = list(plan_manoeuvre(pose, points, grid, plan, safety))
+            self._legs = self._planned(pose, points, grid, avoided=self._avoided, barred=barred)
+            self._avoided = self._avoided if self._legs else NO_PLACES
+        if not self._legs:
+            self._legs = self._planned(pose, points, grid, barred=barred)
+
+    def _planned(
+        self, pose: Pose, points: NDArray[np.float64], grid: OccupancyGrid, **how: Any
+    ) -> list[Leg]:
+        return list(plan_manoeuvre(pose, points, grid, self.config.plan, self._safety, **how))
 
     def _next_leg(self) -> None:
         self._legs = self._legs[1:]

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from nav.cell_window_kernels import cells_around
 from nav.outline import Rectangle
 
-FORWARD, BACKWARD, LEFT, RIGHT = 0, 1, 2, 3
+NO_MOVE, FORWARD, BACKWARD, LEFT, RIGHT = -1, 0, 1, 2, 3
 """The kinds of moves."""
 
 SQRT2 = 2.0**0.5
@@ -102,16 +102,20 @@ def search_way(
     room: float,
     avoided: NDArray[np.float64],
     apart: float,
+    wanted: NDArray[np.float64],
+    within: float,
+    barred: int,
     reach: float,
     step: tuple[float, int],
     prices: tuple[float, float, float],
     most_poses: int,
 ) -> NDArray[np.int64]:
-    """Cheapest moves (Dijkstra 1959) from a pose to one whose axle has ``room`` all round.
+    """Cheapest moves from a pose to one whose axle has ``room`` all round.
 
     Poses are exact; of all that fall into one cell and heading, only the cheapest is gone on from
-    (hybrid A*, Dolgov et al. 2008, without its heuristic). A move may not come nearer to anything
-    than ``clear``, or than the pose before it where that was nearer already.
+    (hybrid A*, Dolgov et al. 2008, with the straight way to ``wanted`` as its heuristic). A move
+    may not come nearer to anything than ``clear``, or than the pose before it where that was nearer
+    already.
 
     Args:
         ordered: The obstacles, as ``bucket_points`` sorts them.
@@ -123,6 +127,9 @@ def search_way(
         room: Distance of the axle's middle from everything that is looked for [m].
         avoided: Places ``(k, 2)`` near which room does not count [m].
         apart: How near [m].
+        wanted: Places ``(k, 2)`` near one of which room is looked for; anywhere if there are none.
+        within: How near [m].
+        barred: The kind of move not to begin with, -1 for none.
         reach: The way may not lead farther than this from the start, along x or y [m].
         step: Length of a straight move [m] and how many turns make a full circle.
         prices: Of a straight move, of a turn, and of a move of another kind than the one before.
@@ -140,10 +147,11 @@ def search_way(
     parents = np.full(len(poses), -1, dtype=np.int64)
     poses[0, 0], poses[0, 1] = start[0], start[1]
     gaps[0] = gaps_at(ordered, begins, buckets, start[0], start[1], start[2], outline)[0]
+    costs = np.zeros(len(poses))
     heap = [(0.0, 0)]
     count, expanded = 1, 0
     while len(heap) > 0 and expanded < most_poses:
-        so_far, index = heapq.heappop(heap)
+        _, index = heapq.heappop(heap)
         x, y, turn = poses[index, 0], poses[index, 1], turns[index]
         column = int(np.floor((x - start[0]) * SQRT2 / length + 0.5)) + side // 2
         row = int(np.floor((y - start[1]) * SQRT2 / length + 0.5)) + side // 2
@@ -156,10 +164,13 @@ def search_way(
         expanded += 1
         yaw = start[2] + turn * 2.0 * np.pi / headings
         has_room = gaps_at(ordered, begins, buckets, x, y, yaw, outline)[1] >= room
-        if has_room and not _is_near(x, y, avoided, apart):
+        is_wanted = _left_to(x, y, wanted, within) == 0.0
+        if has_room and is_wanted and not _is_near(x, y, avoided, apart):
             moves: NDArray[np.int64] = _moves_to(index, parents, kinds)
             return moves
         for kind in range(4):
+            if index == 0 and kind == barred:
+                continue
             gap = _gap_after(
                 ordered, begins, buckets, x, y, yaw, kind, outline, length, 2.0 * np.pi / headings
             )
@@ -175,7 +186,9 @@ def search_way(
             price = prices[0] if is_straight else prices[1]
             if kinds[index] != kind:
                 price += prices[2]
-            heapq.heappush(heap, (so_far + price, count))
+            costs[count] = costs[index] + price
+            left_to_go = _left_to(poses[count, 0], poses[count, 1], wanted, within)
+            heapq.heappush(heap, (costs[count] + left_to_go, count))
             count += 1
     return np.empty(0, dtype=np.int64)
 
@@ -211,6 +224,17 @@ def _is_near(x: float, y: float, places: NDArray[np.float64], apart: float) -> b
     for k in range(len(places)):
         near = near or np.hypot(places[k, 0] - x, places[k, 1] - y) < apart
     return near
+
+
+@njit(cache=True)
+def _left_to(x: float, y: float, places: NDArray[np.float64], within: float) -> float:
+    """The straight way from (x, y) to ``within`` [m] of the nearest place; 0 if there is none."""
+    if len(places) == 0:
+        return 0.0
+    nearest = np.inf
+    for k in range(len(places)):
+        nearest = min(nearest, np.hypot(places[k, 0] - x, places[k, 1] - y))
+    return max(nearest - within, 0.0)
 
 
 @njit(cache=True)

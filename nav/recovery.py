@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from mapping.geometry import Pose, wrap_to_pi
 from mapping.grid import OccupancyGrid
 from mapping.messages import Twist
+from nav.manoeuvre import NO_PLACES
 from nav.manoeuvre_drive import ManoeuvreDrive, ManoeuvreDriveConfig
 from nav.safety import SafetyConfig
 from nav.spot_turn import SpotTurn
@@ -42,6 +43,8 @@ class RecoveryConfig:
     """How to get out of where that does not help."""
     manoeuvre_from: int = 2
     """So many recoveries in a row it takes until the robot manoeuvres."""
+    beyond: float = 0.3
+    """Of its way, what lies farther off than this is where it manoeuvres to, if it can [m]."""
 
 
 class Recovery:
@@ -58,15 +61,26 @@ class Recovery:
         self._turn = SpotTurn()
         self._manoeuvre = ManoeuvreDrive(self.config.manoeuvre, safety)
         self._may_manoeuvre = self._elsewhere = False
+        self._onward = NO_PLACES
 
     @property
     def active(self) -> bool:
         """Whether a recovery is going on."""
         return self._start is not None
 
-    def begin(self, pose: Pose, in_a_row: int = 1) -> None:
-        """Start from here; the more recoveries in a row, the farther, and by other means."""
+    def begin(self, pose: Pose, in_a_row: int = 1, path: NDArray[np.float64] = NO_PLACES) -> None:
+        """Start from here; the more recoveries in a row, the farther, and by other means.
+
+        Args:
+            pose: Pose of base_footprint in the map frame ``(3,)``.
+            in_a_row: Which of them this one is.
+            path: The way that the robot was to go on ``(n, 2)`` [m].
+        """
         config = self.config
+        away = np.hypot(path[:, 0] - pose[0], path[:, 1] - pose[1])
+        near = away < config.manoeuvre.plan.reach
+        within_reach = len(path) if near.all() else int(np.argmin(near))
+        self._onward = path[:within_reach][away[:within_reach] > config.beyond]
         self._start, self._elapsed, self._heading = pose.copy(), 0.0, None
         farther = config.back_off_distance * 2.0 ** (in_a_row - 1)
         self._distance = min(farther, config.longest_back_off)
@@ -88,7 +102,9 @@ class Recovery:
             return None
         if self._may_manoeuvre:
             self._may_manoeuvre = False
-            self._manoeuvre.begin(pose, points, grid, self._elsewhere)
+            self._manoeuvre.begin(
+                pose, points, grid, elsewhere=self._elsewhere, onward=self._onward
+            )
         if self._manoeuvre.active:
             twist = self._manoeuvre.command(pose, points, grid, period)
             if twist is None:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from shapely import LineString, MultiLineString, Polygon
+from shapely import MultiLineString, Polygon
 from shapely.affinity import rotate, translate
 from shapely.geometry import box
 from shapely.ops import unary_union
@@ -43,9 +43,38 @@ class Slot:
 
     @property
     def points(self) -> NDArray[np.float64]:
-        line: LineString = self.lines.geoms[0]
-        along = np.arange(0.0, line.length, SPACING)
-        return np.array([line.interpolate(s).coords[0] for s in along])
+        return points_along(self.lines)
+
+
+@dataclass(frozen=True)
+class Passage:
+    """The gap along x between the corners of two cupboards that reach past one another."""
+
+    width: float
+    length: float
+    """How far the cupboards reach past one another [m]."""
+
+    @property
+    def lines(self) -> MultiLineString:
+        half = 0.5 * self.width
+        right = [(-0.4, -1.0), (-0.4, -half), (self.length, -half), (self.length, -1.0)]
+        left = [(0.0, 1.0), (0.0, half), (0.7, half), (0.7, 1.0)]
+        return MultiLineString([right, left])
+
+    @property
+    def points(self) -> NDArray[np.float64]:
+        return points_along(self.lines)
+
+
+def points_along(lines: MultiLineString) -> NDArray[np.float64]:
+    """What the lidar sees of walls ``(n, 2)``."""
+    return np.array(
+        [
+            line.interpolate(s).coords[0]
+            for line in lines.geoms
+            for s in np.arange(0.0, line.length, SPACING)
+        ]
+    )
 
 
 def outline_at(pose: Pose) -> Polygon:

@@ -16,6 +16,8 @@ from mapping.grid import OccupancyGrid
 from nav.manoeuvre import ManoeuvreConfig, plan_manoeuvre, turning_radius
 from nav.manoeuvre_drive import ManoeuvreDrive
 from nav.manoeuvre_kernels import (
+    BACKWARD,
+    NO_MOVE,
     bucket_points,
     gaps_at,
     occupied_near,
@@ -122,7 +124,7 @@ def test_where_the_first_way_did_not_help_the_next_leads_elsewhere() -> None:
     drive, pose, grid = ManoeuvreDrive(), np.array([0.04, 0.0, 0.0]), OccupancyGrid()
     ends = []
     for elsewhere in (False, True):
-        assert drive.begin(pose, narrow, grid, elsewhere)
+        assert drive.begin(pose, narrow, grid, elsewhere=elsewhere)
         twist = drive.command(pose, narrow, grid, PERIOD)
         assert twist is not None
         ends.append(np.sign(twist.linear_x))
@@ -187,8 +189,9 @@ def test_the_gaps_equal_shapelys_up_to_a_buckets_size(
         assert to_outline >= reach
 
 
+@pytest.mark.parametrize("barred", [NO_MOVE, BACKWARD])
 @pytest.mark.parametrize(("width", "yaw"), [(0.26, 0.0), (0.28, 0.3), (0.30, -0.2)])
-def test_the_search_costs_what_a_plain_one_costs(width: float, yaw: float) -> None:
+def test_the_search_costs_what_a_plain_one_costs(width: float, yaw: float, barred: int) -> None:
     slot = Slot(width, 0.5, 0.0, 0.2)
     points, start = slot.points, np.array([0.2, 0.0, yaw])
     clear, room, reach, step, prices = 0.021, 0.15, 0.4, (0.02, 48), (0.02, 0.02, 0.08)
@@ -196,16 +199,23 @@ def test_the_search_costs_what_a_plain_one_costs(width: float, yaw: float) -> No
     ordered, begins = bucket_points(points, *buckets)
     moves = search_way(
         *(ordered, begins, buckets, start, BURGER_OUTLINE, clear, room),
-        *(np.zeros((0, 2)), 0.3, reach, step, prices, 20_000),
+        *(np.zeros((0, 2)), 0.3, np.zeros((0, 2)), 0.2, barred, reach, step, prices, 20_000),
     )
     kinds = moves.tolist()
+    assert not kinds or kinds[0] != barred
     switches = sum(a != b for a, b in zip([-1, *kinds], kinds, strict=False))
     cost = 0.02 * len(kinds) + 0.08 * switches
-    assert cost == pytest.approx(plain_search(points, start, clear, room, reach), abs=1e-9)
+    expected = plain_search(points, start, clear, room, reach, barred)
+    assert cost == pytest.approx(expected, abs=1e-9)
 
 
 def plain_search(
-    points: NDArray[np.float64], start: Pose, clear: float, room: float, reach: float
+    points: NDArray[np.float64],
+    start: Pose,
+    clear: float,
+    room: float,
+    reach: float,
+    barred: int,
 ) -> float:
     """The cost that ``search_way`` should come to, by dictionaries and all points."""
 
@@ -227,6 +237,8 @@ def plain_search(
         yaw = start[2] + math.radians(7.5 * turn)
         for kind, along, turned in ((0, 0.02, 0), (1, -0.02, 0), (2, 0.0, 1), (3, 0.0, -1)):
             to = (x + along * math.cos(yaw), y + along * math.sin(yaw), turn + turned)
+            if last == -1 and kind == barred:
+                continue
             half_way = gap(to[0], to[1], turn + 0.5 * turned)
             least = min(gap(*to), half_way if turned else math.inf)
             if least >= min(clear, now) - 1e-6:
