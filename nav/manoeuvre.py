@@ -2,7 +2,7 @@
 
 The Burger's axle lies well ahead of its middle: on the spot its rear corners sweep a circle far
 wider than the gap it can drive into. What came in forwards comes out by turning a little wherever
-there is room for it. The search is Dijkstra's over poses (see ``manoeuvre_kernels.search_way``).
+there is room for it. The search is one over poses (see ``manoeuvre_kernels.search_way``).
 """
 
 import math
