@@ -160,7 +160,7 @@ class FrontierExplorer:
             return
         left = self._gain_left(grid, pose, target)
         if left > self.config.phantom_share * target.gain:
-            self._given_up.disappoint(target.frontier, NOTHING_NEW)
+            self._given_up.disappoint(target, NOTHING_NEW)
 
     def _is_due(self, grid: OccupancyGrid, pose: Pose) -> bool:
         """Whether it is time to decide anew: long ago, or the goal has lost its worth."""

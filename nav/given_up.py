@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from nav.frontier import Frontier
 from nav.navigator import DroppedFrontier
+from nav.viewpoint import Viewpoint
 
 SAME_PLACE = 0.35
 """A frontier this close to one that was given up counts as that one [m]."""
@@ -12,12 +13,16 @@ SAME_PLACE = 0.35
 GIVEN_UP, DISAPPOINTED = 1.0, 0.5
 """What counts as once given up: two disappointments do."""
 
+MORE = 1.5
+"""A viewpoint must promise so many times as much as one that showed nothing to be another one."""
+
 
 @dataclass(slots=True)
 class _Record:
     frontier: Frontier
     reason: str
     times: float = 0.0
+    promised: float = 0.0
 
 
 class GivenUp:
@@ -31,9 +36,33 @@ class GivenUp:
         """Leave a frontier alone, for now or, after its last chance, for good."""
         self._add(frontier, reason, GIVEN_UP)
 
-    def disappoint(self, frontier: Frontier, reason: str) -> None:
-        """Note that a viewpoint of it was of no use; the second such leads to giving up."""
-        self._add(frontier, reason, DISAPPOINTED)
+    def disappoint(self, viewpoint: Viewpoint, reason: str) -> None:
+        """Note that a viewpoint was of no use; the second of a frontier leads to giving it up."""
+        record = self._add(viewpoint.frontier, reason, DISAPPOINTED)
+        record.promised = max(record.promised, viewpoint.gain)
+
+    def not_in_vain(self, viewpoints: Sequence[Viewpoint]) -> list[Viewpoint]:
+        """The viewpoints without those that promise no more than one that showed nothing did.
+
+        Of a frontier all of whose viewpoints are such, all stay: each is another chance. But a
+        robot before a doorway shall look through it before it looks from beside it once more.
+        """
+        promising = [item.gain > MORE * self._promised(item.frontier) for item in viewpoints]
+        others = {
+            id(item.frontier)
+            for item, is_promising in zip(viewpoints, promising, strict=True)
+            if is_promising
+        }
+        return [
+            item
+            for item, is_promising in zip(viewpoints, promising, strict=True)
+            if is_promising or id(item.frontier) not in others
+        ]
+
+    def _promised(self, frontier: Frontier) -> float:
+        """The most that a viewpoint of a frontier promised in vain [m2]."""
+        record = self._find(frontier)
+        return 0.0 if record is None else record.promised
 
     def holds(self, frontier: Frontier) -> bool:
         """Whether a frontier is to be left alone now."""
@@ -71,12 +100,13 @@ class GivenUp:
         record = self._find(frontier)
         return record.reason if record is not None and record.times >= GIVEN_UP else None
 
-    def _add(self, frontier: Frontier, reason: str, times: float) -> None:
+    def _add(self, frontier: Frontier, reason: str, times: float) -> _Record:
         record = self._find(frontier)
         if record is None:
             record = _Record(frontier, reason)
             self._records.append(record)
         record.times, record.reason = record.times + times, reason
+        return record
 
     def _find(self, frontier: Frontier) -> _Record | None:
         for record in self._records:

@@ -78,7 +78,7 @@ class Outlook:
         found = self._finder.find(field, self._searches[0].frontiers, visited, robot)
         now = self._put_off.worth_now(found, costmap.free_area)
         if not self._put_off.is_over:
-            return now
+            return given_up.not_in_vain(now)
         fresh = costmap.without_marks()
         places.mark_sure(fresh)
         openings = find_frontiers(fresh, config.opening, places.former_walls)
@@ -89,7 +89,8 @@ class Outlook:
             _Search(frontiers=open_ones, costmap=fresh, finder=self._opening_finder)
         )
         field = replace(field, costmap=fresh)
-        return now + self._opening_finder.find(field, open_ones, visited, robot)
+        through = self._opening_finder.find(field, open_ones, visited, robot)
+        return given_up.not_in_vain(now + through)
 
     def note_left_over(self, given_up: GivenUp) -> None:
         """Record every frontier that hides something, and why the robot does not go there."""

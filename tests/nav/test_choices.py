@@ -128,11 +128,26 @@ def test_of_more_viewpoints_than_are_toured_one_is_chosen_all_the_same() -> None
 
 
 def test_two_disappointments_make_a_frontier_given_up() -> None:
-    given_up = GivenUp()
-    given_up.disappoint(frontier_at(1.0, 1.0), "nothing new")
-    assert not given_up.holds(frontier_at(1.0, 1.0))
-    given_up.disappoint(frontier_at(1.0, 1.0), "nothing new")
-    assert given_up.holds(frontier_at(1.0, 1.0))
+    given_up, viewpoint = GivenUp(), viewpoint_at(1.0, 1.0, 1.0)
+    given_up.disappoint(viewpoint, "nothing new")
+    assert not given_up.holds(viewpoint.frontier)
+    given_up.disappoint(viewpoint, "nothing new")
+    assert given_up.holds(viewpoint.frontier)
+
+
+def test_after_a_view_in_vain_only_better_views_of_the_frontier_count_while_there_are_any() -> None:
+    given_up, doorway, elsewhere = GivenUp(), frontier_at(1.0, 1.0), frontier_at(3.0, 1.0)
+
+    def view(frontier: Frontier, gain: float) -> Viewpoint:
+        return Viewpoint(place=frontier.middle, frontier=frontier, gain=gain, cost=1.0)
+
+    beside, nearly, through = (view(doorway, gain) for gain in (0.40, 0.45, 1.70))
+    other = view(elsewhere, 0.30)
+    everything = [nearly, through, beside, other]
+    assert given_up.not_in_vain(everything) == everything
+    given_up.disappoint(beside, "nothing new")
+    assert given_up.not_in_vain(everything) == [through, other]
+    assert given_up.not_in_vain([beside, other, nearly]) == [beside, other, nearly]
 
 
 def test_marks_keep_their_places_when_the_map_grows() -> None:
