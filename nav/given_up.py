@@ -37,15 +37,20 @@ class GivenUp:
         self._add(frontier, reason, GIVEN_UP)
 
     def disappoint(self, viewpoint: Viewpoint, reason: str) -> None:
-        """Note that a viewpoint was of no use; the second of a frontier leads to giving it up."""
-        record = self._add(viewpoint.frontier, reason, DISAPPOINTED)
+        """Note that a viewpoint was of no use; the second of a frontier leads to giving it up.
+
+        That is, the second when no other place promised more: a robot before a doorway shall look
+        through it, however often it has looked from beside it.
+        """
+        record = self._add(viewpoint.frontier, reason, 0.0)
         record.promised = max(record.promised, viewpoint.gain)
+        if viewpoint.rival <= MORE * record.promised:
+            record.times += DISAPPOINTED
 
     def not_in_vain(self, viewpoints: Sequence[Viewpoint]) -> list[Viewpoint]:
         """The viewpoints without those that promise no more than one that showed nothing did.
 
-        Of a frontier all of whose viewpoints are such, all stay: each is another chance. But a
-        robot before a doorway shall look through it before it looks from beside it once more.
+        Of a frontier all of whose viewpoints are such, all stay: each is another chance.
         """
         promising = [item.gain > MORE * self._promised(item.frontier) for item in viewpoints]
         others = {

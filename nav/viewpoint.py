@@ -41,6 +41,8 @@ class ViewpointConfig:
     """How far a beam is counted on to see into the unknown [m]: something may stand there."""
     gain_beams: int = 240
     """Beams cast to estimate what a viewpoint would show."""
+    through_holes: bool = False
+    """Whether a beam is counted on to see through holes in walls as narrow as a planning cell."""
     keep_beyond: float = 6.0
     """The viewpoints of a frontier this far from the robot are kept from the last time [m]."""
 
@@ -61,6 +63,8 @@ class Viewpoint:
     """Area the lidar is expected to newly see from there [m2]."""
     cost: float
     """Cost of the way there [m, dearer near things]."""
+    rival: float = 0.0
+    """The most that another place promised to show of the same frontier [m2]."""
 
     def is_near(self, other: "Viewpoint") -> bool:
         """Whether both show the same frontier, which may have grown or shrunk in between."""
@@ -144,7 +148,10 @@ class ViewpointFinder:
             cost = field.cost_at(place)
             enough = min(config.min_gain + per_metre * cost, config.always_worth)
             if math.isfinite(cost) and gain >= enough:
-                viewpoints.append(Viewpoint(place=place, frontier=frontier, gain=gain, cost=cost))
+                rival = max((other for at, other in places if at is not place), default=0.0)
+                viewpoints.append(
+                    Viewpoint(place=place, frontier=frontier, gain=gain, cost=cost, rival=rival)
+                )
         return viewpoints
 
 
@@ -188,5 +195,6 @@ def _gain(costmap: Costmap, cell: tuple[int, int], config: ViewpointConfig) -> f
         config.gain_range / costmap.resolution,
         config.gain_depth / costmap.resolution,
         config.gain_beams,
+        config.through_holes,
     )
     return float(cells * costmap.resolution**2)

@@ -61,11 +61,13 @@ def expected_gain(
     reach: float,
     depth: float,
     beams: int,
+    through_holes: bool,
 ) -> int:
     """How many unknown cells a lidar in a cell would see, each counted once.
 
     A beam ends at an occupied cell, at ``reach`` cells, ``depth`` cells into the unknown, or where
-    it would enter the unknown beside an occupied cell: that is a hole in a wall seen from afar.
+    it would enter the unknown beside an occupied cell, unless ``through_holes``: most likely that
+    is a hole in a wall seen from afar.
     """
     rows, columns = states.shape
     span = int(np.ceil(reach)) + 1
@@ -82,7 +84,8 @@ def expected_gain(
             if state == OCCUPIED or into >= depth:
                 break
             if state == UNKNOWN:
-                if into == 0.0 and inside and touches_occupied(states, i, j):
+                is_first = into == 0.0 and inside and not through_holes
+                if is_first and touches_occupied(states, i, j):
                     break
                 into += 1.0
                 if not seen[i - row + span, j - column + span]:

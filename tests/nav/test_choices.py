@@ -135,6 +135,18 @@ def test_two_disappointments_make_a_frontier_given_up() -> None:
     assert given_up.holds(viewpoint.frontier)
 
 
+def test_views_from_beside_a_doorway_do_not_make_it_given_up() -> None:
+    given_up, doorway = GivenUp(), frontier_at(1.0, 1.0)
+    for gain in (0.2, 0.3, 0.4, 0.5):
+        beside = Viewpoint(place=doorway.middle, frontier=doorway, gain=gain, cost=1.0, rival=1.7)
+        given_up.disappoint(beside, "nothing new")
+    assert not given_up.holds(doorway)
+    through = Viewpoint(place=doorway.middle, frontier=doorway, gain=1.7, cost=1.0, rival=0.5)
+    given_up.disappoint(through, "nothing new")
+    given_up.disappoint(through, "nothing new")
+    assert given_up.holds(doorway)
+
+
 def test_after_a_view_in_vain_only_better_views_of_the_frontier_count_while_there_are_any() -> None:
     given_up, doorway, elsewhere = GivenUp(), frontier_at(1.0, 1.0), frontier_at(3.0, 1.0)
 

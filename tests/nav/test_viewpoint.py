@@ -63,6 +63,33 @@ def test_gain_is_the_unknown_area_in_view_and_walls_hide_what_is_behind() -> Non
     assert gain_at(costmap_of(closed), HERE, config) == 0.0
 
 
+def test_through_a_hole_in_a_wall_only_those_see_who_are_told_to() -> None:
+    grid = grid_from_text(
+        """
+        ?????????
+        ####?####
+        #.......#
+        #.......#
+        #.......#
+        #########
+        """
+    )
+    costmap, place = costmap_of(grid), np.array([0.225, 0.125])
+    config = ViewpointConfig(gain_depth=0.5)
+    assert gain_at(costmap, place, config) == 0.0
+    config = ViewpointConfig(gain_depth=0.5, through_holes=True)
+    assert gain_at(costmap, place, config) > 0.0
+
+
+def test_each_viewpoint_knows_what_the_best_other_of_its_frontier_promises() -> None:
+    costmap = costmap_of(grid_from_text(ROOM_WITH_UNKNOWN_EAST))
+    found = viewpoints_from(costmap, HERE)
+    assert len({id(item.frontier) for item in found}) < len(found)
+    for item in found:
+        others = [each for each in found if each.frontier is item.frontier and each is not item]
+        assert item.rival >= max((each.gain for each in others), default=0.0)
+
+
 def test_a_place_outside_the_map_promises_nothing() -> None:
     costmap = costmap_of(grid_from_text(".."))
     assert gain_at(costmap, np.array([9.0, 9.0]), ViewpointConfig()) == 0.0
