@@ -88,7 +88,7 @@ class GivenUp:
 
         The others are among them too if there is a reason for them, ``otherwise``.
         """
-        reasons = [(frontier, self._reason(frontier) or otherwise) for frontier in frontiers]
+        reasons = [(frontier, self.reason(frontier) or otherwise) for frontier in frontiers]
         return tuple(
             DroppedFrontier(
                 x=float(frontier.middle[0]),
@@ -100,7 +100,7 @@ class GivenUp:
             if reason is not None
         )
 
-    def _reason(self, frontier: Frontier) -> str | None:
+    def reason(self, frontier: Frontier) -> str | None:
         """Why a frontier was given up, None if it was not."""
         record = self._find(frontier)
         return record.reason if record is not None and record.times >= GIVEN_UP else None

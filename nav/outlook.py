@@ -26,7 +26,7 @@ NOT_WORTH_IT = "too little to see for the way there"
 """Why a frontier is given up."""
 
 BESIDE = 2
-"""An opening within so many cells of a frontier is a part of it."""
+"""An opening within so many cells of a frontier is a part of it, if that can be looked at."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -82,7 +82,7 @@ class Outlook:
         fresh = costmap.without_marks()
         places.mark_sure(fresh)
         openings = find_frontiers(fresh, config.opening, places.former_walls)
-        openings = _apart_from(self.frontiers, openings, fresh)
+        openings = _apart_from(self._looked_at(given_up), openings, fresh)
         self.frontiers += openings
         open_ones = [item for item in openings if not given_up.holds(item)]
         self._searches.append(
@@ -91,6 +91,14 @@ class Outlook:
         field = replace(field, costmap=fresh)
         through = self._opening_finder.find(field, open_ones, visited, robot)
         return given_up.not_in_vain(now + through)
+
+    def _looked_at(self, given_up: GivenUp) -> list[Frontier]:
+        """The frontiers that some place sees, or saw before they were given up."""
+        return [
+            item
+            for item in self.frontiers
+            if self._finder.has_view(item) or given_up.reason(item) not in (None, NO_VIEW)
+        ]
 
     def note_left_over(self, given_up: GivenUp) -> None:
         """Record every frontier that hides something, and why the robot does not go there."""

@@ -6,7 +6,7 @@ what the lidar would newly see from it, by ray casting (Gonzalez-Banos and Latom
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -43,6 +43,9 @@ class ViewpointConfig:
     """Beams cast to estimate what a viewpoint would show."""
     through_holes: bool = False
     """Whether a beam is counted on to see through holes in walls as narrow as a planning cell."""
+    part_spacing: float = 0.3
+    """How far apart the parts of a frontier are that are looked at where nothing sees its middle
+    [m]."""
     keep_beyond: float = 6.0
     """The viewpoints of a frontier this far from the robot are kept from the last time [m]."""
 
@@ -73,6 +76,9 @@ class Viewpoint:
 
 SAME_FRONTIER = 0.6
 """Frontiers whose middles lie this close to each other count as the same one [m]."""
+
+NOWHERE = (-1, -1)
+"""The cell of no view."""
 
 KEY_RESOLUTION = 0.01
 """Middles of frontiers are told apart to this [m]; planning cells are never finer."""
@@ -127,16 +133,23 @@ class ViewpointFinder:
         return x, y, len(frontier.cells)
 
     def _places(self, field: CostField, frontier: Frontier, visited: NDArray[np.bool_]) -> _Places:
-        """Places that see a frontier, and what each would show [m2]."""
-        cells = {
-            _view_cell(field, frontier, visited, distance, self.config)
-            for distance in self.config.view_distances
-        }
-        return [
-            (field.costmap.cell_to_world(cell), _gain(field.costmap, cell, self.config))
-            for cell in sorted(cells)
-            if cell[0] >= 0
-        ]
+        """Places that see a frontier, and what each would show [m2].
+
+        Those that see its middle; if none does, those that see another part of it.
+        """
+        costmap, config = field.costmap, self.config
+        for part in _parts(costmap, frontier, config.part_spacing):
+            cells = {
+                _view_cell(field, part, visited, distance, config)
+                for distance in config.view_distances
+            }
+            cells.discard(NOWHERE)
+            if cells:
+                return [
+                    (costmap.cell_to_world(cell), _gain(costmap, cell, config))
+                    for cell in sorted(cells)
+                ]
+        return []
 
     def _worthwhile(
         self, field: CostField, frontier: Frontier, places: _Places, per_metre: float
@@ -164,23 +177,34 @@ def gain_at(costmap: Costmap, place: NDArray[np.float64], config: ViewpointConfi
     return _gain(costmap, (row, column), config)
 
 
+def _parts(costmap: Costmap, frontier: Frontier, spacing: float) -> Iterator[tuple[int, int]]:
+    """Cells of a frontier, its middle first, so far from each other [m]."""
+    left = frontier.cells
+    row, column = costmap.world_to_cell(frontier.middle).tolist()
+    while True:
+        yield row, column
+        left = left[np.hypot(left[:, 0] - row, left[:, 1] - column) * costmap.resolution > spacing]
+        if len(left) == 0:
+            return
+        row, column = left[0].tolist()
+
+
 def _view_cell(
     field: CostField,
-    frontier: Frontier,
+    part: tuple[int, int],
     visited: NDArray[np.bool_],
     distance: float,
     config: ViewpointConfig,
 ) -> tuple[int, int]:
-    """The cheapest cell that sees a frontier from within a distance; (-1, -1) if there is none."""
+    """The cheapest cell that sees another from within a distance; NOWHERE if there is none."""
     costmap = field.costmap
-    middle = costmap.world_to_cell(frontier.middle)
     row, column = cheapest_view(
         field.cost_to_come,
         costmap.states,
         costmap.clearance,
         visited,
-        int(middle[0]),
-        int(middle[1]),
+        part[0],
+        part[1],
         distance / costmap.resolution,
         np.float32(config.view_clearance),
     )

@@ -32,6 +32,16 @@ def grid_from_log_odds(log_odds: NDArray[np.float64], resolution: float) -> Occu
     return grid
 
 
+def room_with_slit() -> OccupancyGrid:
+    """A room of 2 x 2 m; of what its doorway in the east, 0.5 m wide, leads to, a slit is known."""
+    log_odds = np.zeros((42, 102))
+    log_odds[:, :42] = 5.0
+    log_odds[1:41, 1:41] = -5.0
+    log_odds[16:25, 41] = -5.0
+    log_odds[25, 42:102] = -5.0
+    return grid_from_log_odds(log_odds, 0.05)
+
+
 def random_grid(seed: int, rows: int = 60, columns: int = 80, fine: int = 1) -> OccupancyGrid:
     """A grid with a free middle, unknown patches and some occupied blocks."""
     rng = np.random.default_rng(seed)

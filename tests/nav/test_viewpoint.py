@@ -10,7 +10,13 @@ from nav.frontier import FrontierConfig, find_frontiers
 from nav.planner import CostField
 from nav.viewpoint import Viewpoint, ViewpointConfig, ViewpointFinder, gain_at
 from nav.visited_places import VisitedPlaces
-from tests.nav.grids import ROOM_WITH_UNKNOWN_EAST, costmap_of, grid_from_text, random_grid
+from tests.nav.grids import (
+    ROOM_WITH_UNKNOWN_EAST,
+    costmap_of,
+    grid_from_text,
+    random_grid,
+    room_with_slit,
+)
 
 HERE = np.array([1.0, 1.0])
 
@@ -43,6 +49,15 @@ def test_the_robot_is_sent_to_known_ground_from_which_the_frontier_is_in_view() 
     found = viewpoints_from(costmap, np.array([0.3, 1.0]))
     assert found
     assert all(0.9 < viewpoint.place[0] < 2.0 for viewpoint in found)
+
+
+def test_a_frontier_whose_middle_no_place_sees_is_looked_at_by_another_part_of_it() -> None:
+    costmap = costmap_of(room_with_slit())
+    _, slit = find_frontiers(costmap, FrontierConfig())
+    field = CostField.around(costmap, HERE, escape_radius=0.0)
+    reached = costmap.cell_to_world(np.argwhere(np.isfinite(field.cost_to_come)))
+    assert np.hypot(*(reached - slit.middle).T).min() > max(ViewpointConfig().view_distances)
+    assert ViewpointFinder().find(field, [slit], VisitedPlaces().on(costmap), HERE)
 
 
 def test_a_place_where_the_robot_has_stood_promises_nothing_any_more() -> None:
