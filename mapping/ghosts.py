@@ -2,6 +2,7 @@
 
 import numpy as np
 from scipy import ndimage
+from scipy.spatial import KDTree
 
 from mapping.coverage import ROUNDING
 from mapping.grid import OCCUPIED, OccupancyGrid
@@ -23,7 +24,10 @@ def ghost_area(grid: OccupancyGrid, truth: TruthMap) -> float:
     places = (centres * grid.resolution + grid.origin - truth.origin) / truth.resolution
     cells = np.floor(places + ROUNDING).astype(np.int64)
     inside = np.all((cells >= 0) & (cells < truth.shape[::-1]), axis=1)
-    at = cells[inside, 1], cells[inside, 0]
-    away = (ndimage.distance_transform_edt(~truth.occupied) - 0.5) * truth.resolution
-    ghosts = truth.visible_free[at] & (np.asarray(away)[at] > FAR_FROM_SOLID)
+    on_floor = cells[inside, ::-1]
+    on_floor = on_floor[truth.visible_free[on_floor[:, 0], on_floor[:, 1]]]
+    # the solid cell nearest to a free one has a free neighbour
+    edges = truth.occupied & ~ndimage.binary_erosion(truth.occupied, border_value=1)
+    gaps, _ = KDTree(np.argwhere(edges)).query(on_floor)
+    ghosts = (gaps - 0.5) * truth.resolution > FAR_FROM_SOLID
     return float(np.count_nonzero(ghosts)) * grid.resolution**2

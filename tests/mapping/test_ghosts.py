@@ -2,6 +2,9 @@
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy import ndimage
 
 from mapping.ghosts import FAR_FROM_SOLID, ghost_area
 from mapping.grid import GridConfig, OccupancyGrid
@@ -52,3 +55,19 @@ def test_what_lies_out_of_sight_or_off_the_raster_is_none() -> None:
 
 def test_an_empty_map_has_no_ghosts() -> None:
     assert ghost_area(map_with(), room(0.05)) == 0.0
+
+
+@given(seed=st.integers(0, 10_000), resolution=st.sampled_from([0.02, 0.05]))
+@settings(max_examples=20, deadline=None)
+def test_ghosts_are_those_that_a_distance_transform_of_the_whole_truth_finds(
+    seed: int, resolution: float
+) -> None:
+    truth, grid = room(resolution), map_with(resolution=resolution)
+    grid.log_odds[np.random.default_rng(seed).random(grid.shape) < 0.05] = 5.0
+    away = (ndimage.distance_transform_edt(~truth.occupied) - 0.5) * resolution
+    far = truth.visible_free & (away > FAR_FROM_SOLID)
+    shift = np.round((np.array(truth.origin) - grid.origin) / resolution).astype(int)[::-1]
+    rows, columns = np.argwhere(far).T + shift[:, None]
+    on_map = (rows < grid.shape[0]) & (columns < grid.shape[1])
+    drawn = grid.log_odds[rows[on_map], columns[on_map]] > 0.0
+    assert ghost_area(grid, truth) == pytest.approx(drawn.sum() * resolution**2)
