@@ -59,6 +59,17 @@ class MapScores:
     cell thick; a wall drawn twice, as by drift, counts twice."""
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _FreeCells:
+    """How many of a map's cells are free."""
+
+    all: int
+    outside: int
+    """Off the truth's raster."""
+    marked: int
+    """Where a mask of the truth is True."""
+
+
 def score_map(grid: OccupancyGrid | MapFile, truth: TruthMap) -> MapScores:
     """Compare a map with the truth, both in one frame, without aligning them."""
     states = grid.states() if isinstance(grid, OccupancyGrid) else grid.states
@@ -132,7 +143,7 @@ def _free_scores(
     in_columns = (columns >= 0) & (columns < states.shape[1])
     read = states[np.ix_(rows[in_rows], columns[in_columns])]
     free_here[np.ix_(in_rows, in_columns)] = read == FREE
-    _, outside = _truth_at_free(states, origin, resolution, truth, truth.visible_free)
+    outside = _count_free(states, origin, resolution, truth, truth.visible_free).outside
     free_elsewhere = outside * (resolution / truth.resolution) ** 2
     both = np.count_nonzero(free_here & truth.visible_free)
     either = np.count_nonzero(free_here | truth.visible_free) + free_elsewhere
@@ -145,26 +156,31 @@ def _false_free(
 ) -> float | None:
     """The share of free cells that are deep in a wall; outside the truth's raster is no wall."""
     deep = ndimage.binary_erosion(truth.occupied, np.ones((3, 3), np.bool_), border_value=1)
-    inside, outside = _truth_at_free(states, origin, resolution, truth, deep)
-    free = len(inside) + outside
-    return float(np.count_nonzero(inside) / free) if free else None
+    free = _count_free(states, origin, resolution, truth, deep)
+    return free.marked / free.all if free.all else None
 
 
-def _truth_at_free(
+def _count_free(
     states: _States,
     origin: tuple[float, float],
     resolution: float,
     truth: TruthMap,
     mask: NDArray[np.bool_],
-) -> tuple[NDArray[np.bool_], int]:
-    """A mask of the truth at the map's free cells inside its raster; how many lie outside."""
+) -> _FreeCells:
+    """Count the map's free cells against a mask of the truth."""
     columns = _cells_at(origin[0], resolution, states.shape[1], truth.origin[0], truth.resolution)
     rows = _cells_at(origin[1], resolution, states.shape[0], truth.origin[1], truth.resolution)
-    free_rows, free_columns = np.nonzero(states == FREE)
-    at_rows, at_columns = rows[free_rows], columns[free_columns]
-    inside = (at_rows >= 0) & (at_rows < truth.shape[0])
-    inside &= (at_columns >= 0) & (at_columns < truth.shape[1])
-    return mask[at_rows[inside], at_columns[inside]], int(np.count_nonzero(~inside))
+    in_rows = (rows >= 0) & (rows < truth.shape[0])
+    in_columns = (columns >= 0) & (columns < truth.shape[1])
+    free = states == FREE
+    inside = free[np.ix_(in_rows, in_columns)]
+    marked = inside & mask[np.ix_(rows[in_rows], columns[in_columns])]
+    count = int(np.count_nonzero(free))
+    return _FreeCells(
+        all=count,
+        outside=count - int(np.count_nonzero(inside)),
+        marked=int(np.count_nonzero(marked)),
+    )
 
 
 def _cells_at(
