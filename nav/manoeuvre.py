@@ -15,17 +15,8 @@ from mapping.burger import LIDAR_POSE_BASE, LIDAR_RANGE_MIN
 from mapping.errors import TestbedError
 from mapping.geometry import Pose, wrap_to_pi
 from mapping.grid import OccupancyGrid
-from nav.manoeuvre_kernels import (
-    BACKWARD,
-    FORWARD,
-    LEFT,
-    NO_MOVE,
-    RIGHT,
-    bucket_points,
-    occupied_near,
-    search_way,
-    worth_minding,
-)
+from nav.gap_kernels import bucket_points, occupied_near, worth_minding
+from nav.manoeuvre_kernels import BACKWARD, FORWARD, LEFT, NO_MOVE, RIGHT, search_way
 from nav.outline import Rectangle
 from nav.safety import SafetyConfig
 

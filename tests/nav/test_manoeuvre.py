@@ -13,17 +13,10 @@ from shapely import MultiPoint, Point
 from mapping.errors import TestbedError
 from mapping.geometry import Pose
 from mapping.grid import OccupancyGrid
+from nav.gap_kernels import bucket_points, gaps_at, occupied_near, worth_minding
 from nav.manoeuvre import ManoeuvreConfig, plan_manoeuvre, turning_radius
 from nav.manoeuvre_drive import ManoeuvreDrive
-from nav.manoeuvre_kernels import (
-    BACKWARD,
-    NO_MOVE,
-    bucket_points,
-    gaps_at,
-    occupied_near,
-    search_way,
-    worth_minding,
-)
+from nav.manoeuvre_kernels import BACKWARD, NO_MOVE, search_way
 from nav.outline import BURGER_OUTLINE
 from nav.recovery import Recovery
 from nav.safety import Safety, SafetyConfig
