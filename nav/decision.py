@@ -67,7 +67,8 @@ class DecisionConfig:
     settling_way: float = 0.2
     """Way that every view counts for, however near [m, as costs]: a second of braking, looking."""
     turning_way: float = 0.17
-    """Way that a radian of the first turn counts for [m, as costs]: at 1.2 rad/s and 0.2 m/s."""
+    """Way that a radian of the first turn counts for [m, as costs]: at 0.2 m/s
+    and 1.2 rad/s, braking and setting off again included."""
     most_gain: float = 6.0
     """Area beyond which more does not count [m2]: guesses about far space are mostly wrong."""
     loyalty: float = 0.3

@@ -12,11 +12,11 @@ class MotionLimits:
 
     max_linear: float = 0.21
     """[m/s]; the wheels saturate at 61 rpm, 0.2108 m/s (OpenCR turtlebot3_burger.h@68ec75d)."""
-    max_angular: float = 1.6
-    """[rad/s]; about half of what the wheels can, to keep slip and scan skew small."""
+    max_angular: float = 2.4
+    """[rad/s]; nine tenths of what the wheels can turn a standing robot with, 2.64 rad/s."""
     linear_acceleration: float = 0.8
     """[m/s2]; a third of Nav2's dwa_local_planner_params_burger.yaml, to keep slip small."""
-    angular_acceleration: float = 6.0
+    angular_acceleration: float = 10.0
     """[rad/s2]."""
     period: float = 0.1
     """Control period [s]."""

@@ -45,7 +45,7 @@ class FollowerConfig:
     [rad]: the error of the wheel base grows with the turns that are left standing."""
     wound_up_above: float = 1.6
     """Turns left standing from which it does so [rad]."""
-    turn_gain: float = 2.5
+    turn_gain: float = 4.0
     """Turn rate per heading error when turning on the spot [1/s]."""
     approach_gain: float = 1.2
     """Speed per distance left to the goal [1/s]."""

@@ -58,7 +58,7 @@ def test_a_goal_behind_is_turned_to_on_the_spot() -> None:
     linear=st.floats(-1.0, 1.0),
     angular=st.floats(-5.0, 5.0),
     last_linear=st.floats(-0.21, 0.21),
-    last_angular=st.floats(-1.6, 1.6),
+    last_angular=st.floats(-MotionLimits().max_angular, MotionLimits().max_angular),
 )
 @settings(max_examples=100, deadline=None)
 def test_speeds_and_accelerations_are_kept_but_braking_is_free(
