@@ -23,7 +23,9 @@ class ExplorerConfig:
     opening: FrontierConfig = FrontierConfig(min_cells=2, beside_walls=True)
     """What counts as a narrow opening in a wall: a door of 0.3 m, seen at a grazing angle, may be
     two planning cells wide between its posts."""
-    opening_view: ViewpointConfig = ViewpointConfig(always_worth=0.4, through_holes=True)
+    opening_view: ViewpointConfig = ViewpointConfig(
+        always_worth=0.4, through_holes=True, square_on=0.5
+    )
     """What makes one worth the way: behind it may lie a room, though little of it shows."""
     former_walls: FormerWallsConfig = FormerWallsConfig()
     visited_places: VisitedPlacesConfig = VisitedPlacesConfig()

@@ -17,7 +17,7 @@ from mapping.errors import TestbedError
 from nav.costmap import Costmap
 from nav.frontier import Frontier
 from nav.planner import CostField
-from nav.viewpoint_kernels import cheapest_view, expected_gain
+from nav.viewpoint_kernels import cheapest_view, expected_gain, view_square_on
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -43,6 +43,9 @@ class ViewpointConfig:
     """Beams cast to estimate what a viewpoint would show."""
     through_holes: bool = False
     """Whether a beam is counted on to see through holes in walls as narrow as a planning cell."""
+    square_on: float = 0.0
+    """A frontier is looked at square on as well, from up to so far [m]: along a wall hardly
+    anything shows of what lies behind a hole in it. 0 for no such look."""
     part_spacing: float = 0.3
     """How far apart the parts of a frontier are that are looked at where nothing sees its middle
     [m]."""
@@ -53,6 +56,8 @@ class ViewpointConfig:
         """Refuse figures that find nothing."""
         if self.gain_beams < 1 or not self.view_distances:
             raise TestbedError("viewpoint: gain_beams and view_distances must not be empty")
+        if not self.square_on >= 0.0:
+            raise TestbedError(f"viewpoint: square_on must not be below 0 m, not {self.square_on}")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -100,7 +105,7 @@ class ViewpointFinder:
         visited: NDArray[np.bool_],
         robot: NDArray[np.float64],
     ) -> list[Viewpoint]:
-        """For each frontier and view distance the cheapest place that sees it, if worth the way.
+        """For each frontier the places that see it and are worth the way.
 
         Frontiers that no known place sees, or whose places would show too little, yield none.
 
@@ -135,7 +140,8 @@ class ViewpointFinder:
     def _places(self, field: CostField, frontier: Frontier, visited: NDArray[np.bool_]) -> _Places:
         """Places that see a frontier, and what each would show [m2].
 
-        Those that see its middle; if none does, those that see another part of it.
+        Those that see its middle; if none does, those that see another part of it. The cheapest
+        from each distance, and one square on if that is asked for.
         """
         costmap, config = field.costmap, self.config
         for part in _parts(costmap, frontier, config.part_spacing):
@@ -143,6 +149,7 @@ class ViewpointFinder:
                 _view_cell(field, part, visited, distance, config)
                 for distance in config.view_distances
             }
+            cells.add(_cell_square_on(field, frontier, part, visited, config))
             cells.discard(NOWHERE)
             if cells:
                 return [
@@ -206,6 +213,29 @@ def _view_cell(
         part[0],
         part[1],
         distance / costmap.resolution,
+        np.float32(config.view_clearance),
+    )
+    return int(row), int(column)
+
+
+def _cell_square_on(
+    field: CostField,
+    frontier: Frontier,
+    part: tuple[int, int],
+    visited: NDArray[np.bool_],
+    config: ViewpointConfig,
+) -> tuple[int, int]:
+    """The cell that sees a part of a frontier square on; NOWHERE if there is none."""
+    costmap = field.costmap
+    row, column = view_square_on(
+        field.cost_to_come,
+        costmap.states,
+        costmap.clearance,
+        visited,
+        frontier.cells,
+        part[0],
+        part[1],
+        config.square_on / costmap.resolution,
         np.float32(config.view_clearance),
     )
     return int(row), int(column)

@@ -54,6 +54,45 @@ def cheapest_view(
 
 
 @njit(cache=True)
+def view_square_on(
+    cost_to_come: NDArray[np.float32],
+    states: NDArray[np.int8],
+    clearance: NDArray[np.float32],
+    visited: NDArray[np.bool_],
+    cells: NDArray[np.int64],
+    row: int,
+    column: int,
+    reach: float,
+    min_clearance: np.float32,
+) -> tuple[int, int]:
+    """The farthest cell within ``reach`` cells that looks at a frontier's middle square on.
+
+    That is away from the unknown beside its ``cells`` ``(n, 2)``, over free cells only. It can be
+    come to, keeps ``min_clearance`` and was not visited. Returns (-1, -1) when there is none.
+    """
+    rows, columns = states.shape
+    away_y, away_x = 0, 0
+    for k in range(len(cells)):
+        i, j = cells[k]
+        for di, dj in ((1, 0), (-1, 0), (0, 1), (0, -1)):
+            if 0 <= i + di < rows and 0 <= j + dj < columns and states[i + di, j + dj] == UNKNOWN:
+                away_y, away_x = away_y - di, away_x - dj
+    length = np.hypot(away_y, away_x)
+    best_row, best_column = -1, -1
+    if length == 0.0:
+        return best_row, best_column
+    for step in range(1, int(reach) + 1):
+        i = int(np.floor(row + 0.5 + step * away_y / length))
+        j = int(np.floor(column + 0.5 + step * away_x / length))
+        if not (0 <= i < rows and 0 <= j < columns) or states[i, j] != FREE:
+            break
+        is_clear = clearance[i, j] >= min_clearance and not visited[i, j]
+        if is_clear and np.isfinite(cost_to_come[i, j]):
+            best_row, best_column = i, j
+    return best_row, best_column
+
+
+@njit(cache=True)
 def expected_gain(
     states: NDArray[np.int8],
     row: int,

@@ -1,14 +1,20 @@
 """Viewpoints on maps small enough to count by hand."""
 
+from dataclasses import replace
+from itertools import product
+
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mapping.grid import FREE
+from mapping.errors import TestbedError
+from mapping.grid import FREE, UNKNOWN
 from nav.costmap import Costmap
 from nav.frontier import FrontierConfig, find_frontiers
 from nav.planner import CostField
 from nav.viewpoint import Viewpoint, ViewpointConfig, ViewpointFinder, gain_at
+from nav.viewpoint_kernels import view_square_on
 from nav.visited_places import VisitedPlaces
 from tests.nav.grids import (
     ROOM_WITH_UNKNOWN_EAST,
@@ -94,6 +100,64 @@ def test_through_a_hole_in_a_wall_only_those_see_who_are_told_to() -> None:
     assert gain_at(costmap, place, config) == 0.0
     config = ViewpointConfig(gain_depth=0.5, through_holes=True)
     assert gain_at(costmap, place, config) > 0.0
+
+
+def test_a_hole_in_the_wall_that_the_robot_stands_at_is_looked_at_square_on() -> None:
+    wall, room = "#" * 60 + "?" * 4 + "#" * 18, "#" + "." * 80 + "#"
+    rows = ["?" * 82] * 4 + [wall] * 3 + [room] * 30 + ["#" * 82]
+    costmap, here = costmap_of(grid_from_text("\n".join(rows))), np.array([1.0, 1.35])
+    (hole,) = find_frontiers(costmap, FrontierConfig(min_cells=2))
+    field, nothing = CostField.around(costmap, here), VisitedPlaces().on(costmap)
+    config = ViewpointConfig(through_holes=True, square_on=0.5)
+    along = ViewpointFinder(replace(config, square_on=0.0)).find(field, [hole], nothing, here)
+    found = ViewpointFinder(config).find(field, [hole], nothing, here)
+    best = max(found, key=lambda viewpoint: viewpoint.gain)
+    assert best.place == pytest.approx(hole.middle - (0.0, 0.5), abs=0.051)
+    assert best.gain > 1.5 * max(viewpoint.gain for viewpoint in along)
+
+
+@given(seed=st.integers(0, 10_000), reach=st.floats(0.0, 20.0))
+@settings(max_examples=25, deadline=None)
+def test_the_place_square_on_equals_a_plain_walk_away_from_the_unknown(
+    seed: int, reach: float
+) -> None:
+    costmap = costmap_of(random_grid(seed))
+    cells = np.argwhere(np.isfinite(costmap.cost))
+    field = CostField.around(costmap, costmap.cell_to_world(cells[len(cells) // 2]))
+    visited = np.random.default_rng(seed).random(costmap.states.shape) < 0.3
+    for frontier in find_frontiers(costmap, FrontierConfig(min_cells=2)):
+        unknown = np.pad(costmap.states == UNKNOWN, 1)
+        away = np.zeros(2)
+        for cell, step in product(frontier.cells, ((1, 0), (-1, 0), (0, 1), (0, -1))):
+            away -= np.multiply(step, unknown[tuple(cell + 1 + step)])
+        row, column = costmap.world_to_cell(frontier.middle).tolist()
+        expected = (-1, -1)
+        for step in range(1, int(reach) + 1) if away.any() else ():
+            at = np.floor((row + 0.5, column + 0.5) + step * away / np.linalg.norm(away))
+            cell = (int(at[0]), int(at[1]))
+            if min(cell) < 0 or (np.array(cell) >= costmap.states.shape).any():
+                break
+            if costmap.states[cell] != FREE:
+                break
+            clear = costmap.clearance[cell] >= np.float32(0.14)
+            if clear and np.isfinite(field.cost_to_come[cell]) and not visited[cell]:
+                expected = cell
+        assert expected == view_square_on(
+            field.cost_to_come,
+            costmap.states,
+            costmap.clearance,
+            visited,
+            frontier.cells,
+            row,
+            column,
+            reach,
+            np.float32(0.14),
+        )
+
+
+def test_a_look_square_on_from_behind_the_frontier_is_refused() -> None:
+    with pytest.raises(TestbedError, match="square_on must not be below 0"):
+        ViewpointConfig(square_on=-0.1)
 
 
 def test_each_viewpoint_knows_what_the_best_other_of_its_frontier_promises() -> None:
