@@ -1,6 +1,7 @@
 """What moves is noticed and followed; what stands is never taken for it."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -263,31 +264,18 @@ def test_a_map_jump_moves_what_is_remembered(jump: tuple[float, float, float], a
 
 def moved(view: ScanView, frame: Pose) -> ScanView:
     """The same view in a map in which the old one lies at ``frame``."""
-    return ScanView(
-        stamp=view.stamp,
+    return replace(
+        view,
         points=transform_points(frame, view.points),
-        beams=view.beams,
         origin=transform_points(frame, view.origin[None])[0],
         bearing=view.bearing + float(frame[2]),
-        increment=view.increment,
-        ranges=view.ranges,
     )
 
 
 def test_a_scan_without_turn_from_beam_to_beam_tells_nothing() -> None:
     movers = seen_after(EMPTY, EMPTY)
     still = bare_view(9.0, with_leg(EMPTY, 87, 93, 1.0))
-    movers.update(
-        ScanView(
-            stamp=still.stamp,
-            points=still.points,
-            beams=still.beams,
-            origin=still.origin,
-            bearing=0.0,
-            increment=0.0,
-            ranges=still.ranges,
-        )
-    )
+    movers.update(replace(still, bearing=0.0, increment=0.0))
     assert movers.known == []
 
 
