@@ -101,7 +101,7 @@ def choose(
     Args:
         viewpoints: Candidates, any number of a frontier.
         field: The cost field that their costs are from.
-        pose: Where the robot is ``(3,)``.
+        pose: Where the robot is and which way it drives ``(3,)``.
         current: Where it is going, if anywhere; favoured.
         config: What is weighed how.
         loyalty: How many times as loyal to the current viewpoint as usual; ``Loyalty`` tells.

@@ -46,6 +46,7 @@ class Driver:
         self._elapsed = 0.0
         self._recoveries = 0
         self._recovered_at: Pose | None = None
+        self._moved_at = -math.inf
         self.has_new_scan = False
         """Whether the newest scan came in this period."""
         self.jump: Pose | None = None
@@ -72,6 +73,11 @@ class Driver:
         return self._follower.path_ahead
 
     @property
+    def course(self) -> Pose:
+        """The robot's pose ``(3,)``, turned round when it drives backwards."""
+        return self._pose + (0.0, 0.0, 0.0 if self._follower.gear > 0.0 else np.pi)
+
+    @property
     def place_ahead(self) -> NDArray[np.float64]:
         """A point of the path 0.15 m or so ahead ``(2,)``; where the robot is, without a path."""
         path = self._follower.path_ahead
@@ -95,6 +101,8 @@ class Driver:
         )
         if self.has_new_scan and self._scan_points.view is not None:
             self._movers.update(self._scan_points.view)
+            if any(mover.is_known_to_move for mover in self._movers.known):
+                self._moved_at = self.time
         self._elapsed += self.period
 
     def stand(self) -> Twist:
@@ -103,7 +111,8 @@ class Driver:
 
     def follow(self, clearance: float) -> Twist:
         """Drive on along the path; ``clearance`` is the room around the robot [m]."""
-        return self._move(self._follower.command(self._pose, clearance))
+        may_reverse = self.time - self._moved_at > self.config.facing_time
+        return self._move(self._follower.command(self._pose, clearance, may_reverse))
 
     def recover(self) -> Twist | None:
         """Go on with the recovery; None when it is over."""
@@ -141,7 +150,8 @@ class Driver:
 
     def begin_recovery(self) -> None:
         """Back off from here and turn to the open side, after ``may_recover``."""
-        self._recovery.begin(self._pose, self._recoveries, self._follower.path_ahead)
+        follower = self._follower
+        self._recovery.begin(self._pose, self._recoveries, follower.path_ahead, follower.gear)
 
     def _move(self, wanted: Twist) -> Twist:
         """The twist that is safe, remembered as the one to accelerate from."""

@@ -26,6 +26,9 @@ class DriverConfig:
     """Returns up to this far are held against the path [m]."""
     path_clearance: float = 0.10
     """A return this close to the path ahead blocks it [m]."""
+    facing_time: float = 30.0
+    """The robot drives forwards only for so long after something was seen to move [s]: whoever runs
+    into its back, where it is going, tips it over its front, which no caster holds."""
     recoveries_in_a_row: int = 10
     """Recoveries without getting on in between after which the robot is stuck: enough to try a
     frontier in three ways, three recoveries each."""

@@ -229,7 +229,8 @@ class FrontierExplorer:
         config, loyalty = self.config, self._loyalty
         field = CostField.around(self._costmap, pose[:2])
         worth_now = self._outlook.viewpoints(field, self._places, self._given_up, pose[:2])
-        best = choose(worth_now, field, pose, self._target, config.decision, loyalty.times)
+        course = self._driver.course
+        best = choose(worth_now, field, course, self._target, config.decision, loyalty.times)
         loyalty.note(self._target, best, self._costmap.free_area)
         if best is None and not self._is_cut_off(field):
             self._outlook.note_left_over(self._given_up)

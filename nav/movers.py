@@ -82,6 +82,11 @@ class Mover:
         """Whether it was seen often enough to tell that it goes nowhere."""
         return self.sightings > LEAST_SCANS and float(np.hypot(*self.velocity)) < LEAST_SPEED
 
+    @property
+    def is_known_to_move(self) -> bool:
+        """Whether it was seen often enough to tell that it goes somewhere."""
+        return self.sightings > LEAST_SCANS and not self.is_known_to_stand
+
     def at(self, time: float) -> NDArray[np.float64]:
         """Where it will be at a time, going on as it does ``(2,)``."""
         return np.asarray(self.place + (time - self.stamp) * self.velocity)

@@ -1,7 +1,8 @@
 """Turns a path and a pose into a twist: pure pursuit, slower in curves and near things.
 
 Coulter 1992 for the arc to a point ahead, Macenski et al. 2023 (regulated pure pursuit) for
-slowing by curvature, by clearance and on approach.
+slowing by curvature, by clearance and on approach. The lidar sees all around, so the robot drives
+backwards as well as forwards, and rather so than turn round.
 """
 
 import math
@@ -11,11 +12,14 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from mapping.errors import TestbedError
 from mapping.geometry import Pose
 from mapping.messages import Twist
 from nav.motion_limits import MotionLimits
 from nav.path_kernels import advance, point_ahead
 from nav.spot_turn import SpotTurn
+
+FORWARDS = 1.0
 
 SHORTEST_LOOKAHEAD = 1e-3
 """A point nearer than this gives no curvature worth dividing by [m]."""
@@ -40,6 +44,9 @@ class FollowerConfig:
     """Heading error from which the robot stops and turns [rad]."""
     drive_again_below: float = 0.35
     """Heading error at which it drives again [rad]."""
+    reverse_above: float = 2.0
+    """Heading error from which the robot goes on the other way round, backwards or forwards again,
+    rather than turn [rad]; from pi on it never does."""
     unwind_above: float = 1.7
     """Heading error from which the robot may turn the long way round, if that undoes earlier turns
     [rad]: the error of the wheel base grows with the turns that are left standing."""
@@ -51,6 +58,11 @@ class FollowerConfig:
     """Speed per distance left to the goal [1/s]."""
     creep_speed: float = 0.03
     """Slowest useful speed [m/s]."""
+
+    def __post_init__(self) -> None:
+        """Refuse figures by which the robot would not make up its mind."""
+        if not self.reverse_above > 0.5 * math.pi:
+            raise TestbedError(f"reverse_above: {self.reverse_above}; must be above a right angle")
 
 
 class PathFollower:
@@ -65,6 +77,12 @@ class PathFollower:
         self._turn = SpotTurn()
         self._wound = 0.0
         self._yaw: float | None = None
+        self._gear = FORWARDS
+
+    @property
+    def gear(self) -> float:
+        """1 when the robot drives forwards, -1 when it drives backwards."""
+        return self._gear
 
     @property
     def path_ahead(self) -> NDArray[np.float64]:
@@ -83,8 +101,11 @@ class PathFollower:
         self._progress, left = advance(self._path, self._along, self._progress, pose)
         return float(left)
 
-    def command(self, pose: Pose, clearance: float) -> Twist:
-        """The twist for the next period, within the limits; ``clearance`` is that of the robot."""
+    def command(self, pose: Pose, clearance: float, may_reverse: bool = True) -> Twist:
+        """The twist for the next period, within the limits; ``clearance`` is that of the robot.
+
+        Without ``may_reverse`` the robot turns round where it would go backwards.
+        """
         config = self.config
         left = self.distance_left(pose)
         openness = (clearance - config.tight_clearance) / (
@@ -94,7 +115,7 @@ class PathFollower:
         lookahead = config.tight_lookahead + openness * (config.lookahead - config.tight_lookahead)
         x, y = point_ahead(self._path, self._along, self._progress, lookahead)
         ahead_x, ahead_y = x - float(pose[0]), y - float(pose[1])
-        error = math.remainder(math.atan2(ahead_y, ahead_x) - float(pose[2]), 2.0 * math.pi)
+        error = self._heading_error(math.atan2(ahead_y, ahead_x) - float(pose[2]), may_reverse)
         direction = self._turn_direction(error, float(pose[2]))
         wanted = (
             Twist(angular_z=direction * config.turn_gain * abs(error))
@@ -102,6 +123,21 @@ class PathFollower:
             else self._arc(error, math.hypot(ahead_x, ahead_y), left, openness)
         )
         return config.limits.approach(wanted, self.last)
+
+    def _heading_error(self, bearing: float, may_reverse: bool) -> float:
+        """How far off the robot's front, or its back, the way ahead lies [rad].
+
+        Front or back as the robot drives, which it changes when that spares it to turn round.
+        """
+        front = math.remainder(bearing, 2.0 * math.pi)
+        back = math.remainder(bearing + math.pi, 2.0 * math.pi)
+        if not may_reverse:
+            self._gear = FORWARDS
+        error, other = (front, back) if self._gear == FORWARDS else (back, front)
+        if not may_reverse or self._turn.direction or abs(error) <= self.config.reverse_above:
+            return error
+        self._gear = -self._gear
+        return other
 
     def _turn_direction(self, error: float, yaw: float) -> float:
         """Which way to turn on the spot, +1 or -1, or 0 to drive."""
@@ -131,7 +167,7 @@ class PathFollower:
         if curvature != 0.0:
             speed = min(speed, limits.max_angular / abs(curvature))
         speed *= max(math.cos(error), 0.0)
-        return Twist(linear_x=speed, angular_z=speed * curvature)
+        return Twist(linear_x=self._gear * speed, angular_z=speed * curvature)
 
 
 def _densify(path: NDArray[np.float64], spacing: float) -> NDArray[np.float64]:

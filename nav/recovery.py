@@ -58,6 +58,7 @@ class Recovery:
         self._elapsed = 0.0
         self._heading: float | None = None
         self._distance = self.config.back_off_distance
+        self._back_off = Twist()
         self._turn = SpotTurn()
         self._manoeuvre = ManoeuvreDrive(self.config.manoeuvre, safety)
         self._may_manoeuvre = self._elsewhere = False
@@ -68,13 +69,20 @@ class Recovery:
         """Whether a recovery is going on."""
         return self._start is not None
 
-    def begin(self, pose: Pose, in_a_row: int = 1, path: NDArray[np.float64] = NO_PLACES) -> None:
+    def begin(
+        self,
+        pose: Pose,
+        in_a_row: int = 1,
+        path: NDArray[np.float64] = NO_PLACES,
+        gear: float = 1.0,
+    ) -> None:
         """Start from here; the more recoveries in a row, the farther, and by other means.
 
         Args:
             pose: Pose of base_footprint in the map frame ``(3,)``.
             in_a_row: Which of them this one is.
             path: The way that the robot was to go on ``(n, 2)`` [m].
+            gear: 1 when it drove forwards, -1 when backwards: it backs off the other way.
         """
         config = self.config
         away = np.hypot(path[:, 0] - pose[0], path[:, 1] - pose[1])
@@ -82,6 +90,7 @@ class Recovery:
         within_reach = len(path) if near.all() else int(np.argmin(near))
         self._onward = path[:within_reach][away[:within_reach] > config.beyond]
         self._start, self._elapsed, self._heading = pose.copy(), 0.0, None
+        self._back_off = Twist(linear_x=-gear * config.back_off_speed)
         farther = config.back_off_distance * 2.0 ** (in_a_row - 1)
         self._distance = min(farther, config.longest_back_off)
         self._may_manoeuvre = in_a_row >= config.manoeuvre_from
@@ -123,7 +132,7 @@ class Recovery:
             return None
         backed = float(np.hypot(*(pose[:2] - start[:2])))
         if self._heading is None and backed < self._distance and self._elapsed < backing_time:
-            return Twist(linear_x=-config.back_off_speed)
+            return self._back_off
         if self._heading is None:
             self._heading = open_heading(pose, points, config.view)
             error = float(wrap_to_pi(self._heading - pose[2]))

@@ -241,6 +241,15 @@ def test_a_recovery_backs_off_then_turns_then_ends() -> None:
     assert not recovery.active
 
 
+@pytest.mark.parametrize("gear", [1.0, -1.0])
+def test_a_recovery_backs_off_to_where_the_robot_came_from(gear: float) -> None:
+    recovery = Recovery()
+    recovery.begin(np.zeros(3), gear=gear)
+    twist = recovery.command(np.zeros(3), np.zeros((0, 2)), OccupancyGrid(), 0.1)
+    assert twist is not None
+    assert gear * twist.linear_x < 0.0
+
+
 def scan_with(ahead: float, left: float, right: float) -> LaserScan:
     ranges = np.full(360, 3.0, dtype=np.float32)
     ranges[:30], ranges[-30:] = ahead, ahead

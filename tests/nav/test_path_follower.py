@@ -7,10 +7,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from mapping.errors import TestbedError
 from mapping.geometry import wrap_to_pi
 from mapping.messages import Twist
 from nav.motion_limits import MotionLimits
-from nav.path_follower import PathFollower
+from nav.path_follower import FollowerConfig, PathFollower
 
 
 def drive(follower: PathFollower, pose: np.ndarray, seconds: float, clearance: float) -> np.ndarray:
@@ -46,12 +47,55 @@ def test_a_right_angle_is_followed_closer_where_it_is_tight(clearance: float, bo
     assert np.hypot(*(poses[-1, :2] - path[-1])) < 0.05
 
 
-def test_a_goal_behind_is_turned_to_on_the_spot() -> None:
+def test_a_goal_behind_is_driven_to_backwards_and_back_again_forwards() -> None:
     follower = PathFollower()
+    there = np.array([[0.0, 0.0], [-1.0, 0.1]])
+    pose = np.zeros(3)
+    for path, gear in ((there, -1.0), (there[::-1], 1.0)):
+        follower.set_path(path)
+        poses = drive(follower, pose, 12.0, 0.5)
+        assert follower.gear == gear
+        assert np.abs(poses[:, 2]).max() < 0.3, "it turns to the way, not round"
+        assert distance_to_path(poses, path).max() < 0.03
+        assert np.hypot(*(poses[-1, :2] - path[-1])) < 0.05
+        pose = poses[-1]
+
+
+def test_a_goal_behind_is_turned_to_on_the_spot_by_who_does_not_drive_backwards() -> None:
+    follower = PathFollower(FollowerConfig(reverse_above=np.pi))
     follower.set_path(np.array([[0.0, 0.0], [-1.0, 0.0]]))
     poses = drive(follower, np.zeros(3), 1.0, 0.5)
+    assert follower.gear == 1.0
     assert np.hypot(*poses[-1, :2]) < 0.01
     assert abs(poses[-1, 2]) > 0.5
+
+
+@given(yaw=st.floats(-np.pi, np.pi))
+@settings(max_examples=25, deadline=None)
+def test_a_way_is_driven_alike_with_the_front_and_with_the_back_ahead(yaw: float) -> None:
+    path = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 0.6]])
+    follower, turned = PathFollower(), PathFollower()
+    follower.set_path(path)
+    turned.set_path(path)
+    one = drive(follower, np.array([0.0, 0.0, yaw]), 12.0, 0.5)
+    other = drive(turned, np.array([0.0, 0.0, wrap_to_pi(yaw + np.pi)]), 12.0, 0.5)
+    for poses, path_follower in ((one, follower), (other, turned)):
+        turns = np.abs(wrap_to_pi(np.diff(poses[:, 2])))
+        still = np.hypot(*np.diff(poses[:, :2], axis=0).T) < 1e-3
+        at_start = still & (np.hypot(*(poses[1:, :2] - path[0]).T) < 0.05)
+        assert turns[at_start].sum() < FollowerConfig().reverse_above + 0.1
+        assert distance_to_path(poses, path).max() < 0.12
+        assert np.hypot(*(poses[-1, :2] - path[-1])) < 0.05
+        assert path_follower.gear in (-1.0, 1.0)
+    if np.abs(yaw) < 1.1 or np.abs(yaw) > 2.05:
+        assert follower.gear == -turned.gear
+        assert one[:, :2] == pytest.approx(other[:, :2], abs=1e-6)
+
+
+@pytest.mark.parametrize("value", [1.5, np.nan])
+def test_reversing_from_less_than_a_right_angle_is_refused(value: float) -> None:
+    with pytest.raises(TestbedError, match=r"reverse_above: .*; must be above a right angle"):
+        FollowerConfig(reverse_above=value)
 
 
 @given(
