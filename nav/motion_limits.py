@@ -36,9 +36,13 @@ class MotionLimits:
     def approach(self, wanted: Twist, last: Twist) -> Twist:
         """The twist nearest to ``wanted`` that can follow ``last`` within one period.
 
-        Slowing down is not limited: a robot that must stop may stop.
+        Slowing down is not limited: a robot that must stop may stop. From one direction to the
+        other it stands for a period: thrown from full speed into the other it rocks on its wheels,
+        and feels like one that somebody has run into.
         """
         linear = _clamp(wanted.linear_x, -self.max_linear, self.max_linear)
+        if linear * last.linear_x < 0.0:
+            linear = 0.0
         angular = _clamp(wanted.angular_z, -self.max_angular, self.max_angular)
         return Twist(
             linear_x=_ramp(linear, last.linear_x, self.linear_acceleration * self.period),

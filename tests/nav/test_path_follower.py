@@ -116,6 +116,7 @@ def test_speeds_and_accelerations_are_kept_but_braking_is_free(
     gained = abs(next_one.linear_x) - abs(last_linear) * (next_one.linear_x * last_linear >= 0.0)
     assert gained <= limits.linear_acceleration * limits.period + 1e-9
     assert limits.approach(Twist(), last) == Twist()
+    assert next_one.linear_x * last_linear >= 0.0
 
 
 def test_distance_left_shrinks_to_nothing_along_the_way() -> None:
