@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from mapping.errors import TestbedError
 from mapping.geometry import Pose, wrap_to_pi
 from nav.greedy_rules import GREEDY_RULES, SHORTEST_WAY
+from nav.loyalty import MOST
 from nav.planner import CostField
 from nav.tour import best_order
 from nav.viewpoint import Viewpoint
@@ -63,7 +64,9 @@ class DecisionConfig:
     """What a viewpoint's worth is weighed by."""
 
     rule: str = GAIN_RATE
-    """``gain_rate``; or, to compare with, ``tour`` or one of GREEDY_RULES."""
+    """``gain_rate``; or, to compare with, ``tour`` or one of GREEDY_RULES, which change their minds
+    as they were made to, but stay with a goal once ``Loyalty`` is at its most: none goes to and fro
+    until the battery is empty."""
     settling_way: float = 0.2
     """Way that every view counts for, however near [m, as costs]: a second of braking, looking."""
     turning_way: float = 0.17
@@ -107,7 +110,8 @@ def choose(
         loyalty: How many times as loyal to the current viewpoint as usual; ``Loyalty`` tells.
     """
     if config.rule in GREEDY_RULES:
-        return GREEDY_RULES[config.rule](viewpoints, field, pose)
+        kept = _kept(viewpoints, current) if loyalty >= MOST else None
+        return kept or GREEDY_RULES[config.rule](viewpoints, field, pose)
     if config.rule == TOUR:
         times = _tour_times(viewpoints, pose, current, config.tour, loyalty)
         return _first_of_tour(viewpoints, times, field, config.tour)
@@ -120,6 +124,12 @@ def choose(
         return min(viewpoint.gain, config.most_gain) / max(way, SHORTEST_WAY)
 
     return max(viewpoints, key=rate, default=None)
+
+
+def _kept(viewpoints: Sequence[Viewpoint], current: Viewpoint | None) -> Viewpoint | None:
+    """The best view of where the robot is going, if it is still worth going to."""
+    near = (each for each in viewpoints if current is not None and each.is_near(current))
+    return max(near, key=lambda each: each.gain, default=None)
 
 
 def _first_turn(viewpoint: Viewpoint, pose: Pose) -> float:

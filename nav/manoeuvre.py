@@ -32,8 +32,9 @@ class ManoeuvreConfig:
     """Length of a straight move [m]."""
     headings: int = 48
     """Turns that make a full circle: 7.5 degrees each."""
-    reach: float = 0.8
-    """A way out leads no farther than this from the start, along x or y [m]."""
+    reach: float = 1.3
+    """A way out leads no farther than this from the start, along x or y [m]: through a gap as deep
+    as three robots are long, and to where there is room behind it."""
     turn_price: float = 0.02
     """What a turn costs, as a way driven [m]: as much as a straight move, it takes as long."""
     switch_price: float = 0.08
@@ -52,8 +53,8 @@ class ManoeuvreConfig:
     same_wall: float = 0.05
     """A cell of the map this close to a point of the scan is the same wall [m], and the scan knows
     better where it is."""
-    most_poses: int = 40_000
-    """The search gives up after so many poses: some 0.1 s."""
+    most_poses: int = 120_000
+    """The search gives up after so many poses: some 0.3 s."""
 
     def __post_init__(self) -> None:
         """Refuse figures with which nothing is found."""

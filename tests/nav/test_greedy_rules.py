@@ -10,6 +10,7 @@ from nav.decision import GAIN_RATE, RULES, TOUR, DecisionConfig, choose
 from nav.explorer import FrontierExplorer
 from nav.frontier import Frontier
 from nav.greedy_rules import GREEDY_RULES, explore_lite, gain_per_cost, nearest
+from nav.loyalty import MOST
 from nav.navigators import make_navigator
 from nav.planner import CostField
 from nav.viewpoint import Viewpoint
@@ -124,12 +125,19 @@ def test_of_nothing_every_rule_chooses_none(rule: str) -> None:
 
 
 @pytest.mark.parametrize("rule", GREEDY_RULES)
-def test_a_decision_by_a_rule_is_that_rules_choice_however_loyal_the_robot(rule: str) -> None:
+def test_a_decision_by_a_rule_is_that_rules_choice_until_it_went_to_and_fro_too_often(
+    rule: str,
+) -> None:
     viewpoints = random_viewpoints(5, 12)
     config = DecisionConfig(rule=rule, loyalty=1000.0)
     expected = GREEDY_RULES[rule](viewpoints, FIELD, POSE)
     for current in viewpoints:
-        assert choose(viewpoints, FIELD, POSE, current, config) is expected
+        assert choose(viewpoints, FIELD, POSE, current, config, 0.5 * MOST) is expected
+        kept = choose(viewpoints, FIELD, POSE, current, config, MOST)
+        assert kept is not None
+        assert kept.is_near(current)
+    gone = viewpoint(line_of(195, 3), 1.0, 5.0)
+    assert choose(viewpoints, FIELD, POSE, gone, config, MOST) is expected
 
 
 def test_the_rules_differ() -> None:

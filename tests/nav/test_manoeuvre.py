@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 from shapely import MultiPoint, Point
@@ -33,14 +33,15 @@ ROOM = turning_radius(BURGER_OUTLINE) + SafetyConfig().margin
 
 @given(
     width=st.floats(0.26, 0.32),
-    depth=st.floats(0.25, 0.6),
+    depth=st.floats(0.25, 1.1),
     turned=st.floats(-3.0, 3.0),
     slant=st.floats(-0.5, 0.5),
-    ahead=st.floats(0.1, 0.55),
+    ahead=st.floats(0.1, 1.05),
     aside=st.floats(-0.04, 0.04),
     yaw=st.floats(-0.6, 0.6),
     seed=st.integers(0, 1000),
 )
+@example(0.275, 1.1, 0.0, 0.0, 1.0, 0.0, 0.1, 1)
 @settings(max_examples=60, deadline=None)
 def test_it_gets_out_of_any_slot_that_it_got_into_without_touching(
     width: float,
