@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mapping.geometry import Pose, between, compose
-from mapping.messages import Imu, Odometry, accelerations
+from mapping.messages import Imu, Odometry
 from mapping.pose_covariance import carried, turned
 from mapping.slam.fusion import FusedTrack
 from mapping.slam.keyframe_graph import KeyframeGraph, view_of
@@ -16,18 +16,13 @@ from mapping.slam.odometry_calibration import OdometryCalibration
 from mapping.slam.scan_cloud import ScanCloud
 from mapping.slam.scan_match_config import ScanMatchConfig
 from mapping.slam.scan_matcher import match_scan
+from mapping.slam.shove_detector import ShoveDetector
 
 START_COVARIANCE = np.diag(np.square([0.004, 0.004, 0.0015]))
 """How sure the first pose is: as sure as the first match will be [m^2, m^2, rad^2]."""
 
-SHOVE_ACCELERATION = 3.5
-"""No drive accelerates a robot so hard [m/s2]: a Burger's brakes and turns reach 3.0."""
-
-SHOVE_TIME = 1.0
-"""So long after such a jolt the robot may still be pushed about, and scans be bent by it [s]."""
-
 SHOVE_COVARIANCE = np.diag(np.square([0.1, 0.1, 0.15]))
-"""How far it may be pushed between two scans [m^2, m^2, rad^2]."""
+"""How far a robot that is shoved may be pushed between two scans [m^2, m^2, rad^2]."""
 
 STILL_SHIFT, STILL_TURN = 5e-4, 5e-4
 """A robot that moved less than this [m, rad] since its last scan is where it was."""
@@ -57,27 +52,17 @@ class ScanTracker:
         self._track = FusedTrack(config.fusion)
         self._calibration = OdometryCalibration(config.calibration)
         self._has_gyro = False
-        self._newest_imu = self._shoved_until = -math.inf
+        self._shoves = ShoveDetector()
         self._scan_odom: Pose | None = None
         self._unmatched = np.zeros(2)
 
     def add(self, odometry: Sequence[Odometry], imu: Sequence[Imu]) -> None:
         """Take the messages of one control period."""
         self._track.add(odometry, imu)
-        self._note_shoves(imu)
+        self._shoves.add(odometry, imu)
         if not self._has_gyro and len(imu) > 0:
             self._has_gyro = True
             self._calibration.trust_heading()
-
-    def _note_shoves(self, imu: Sequence[Imu]) -> None:
-        """Notice by the accelerometer when somebody has run into the robot: its wheels do not."""
-        rows = accelerations(imu)
-        if len(rows) == 0:
-            return
-        self._newest_imu = float(rows[-1, 0])
-        hard = rows[:, 1] ** 2 + rows[:, 2] ** 2 > SHOVE_ACCELERATION**2
-        if hard.any():
-            self._shoved_until = float(rows[hard, 0].max()) + SHOVE_TIME
 
     def poses_at(self, stamps: ArrayLike) -> Pose | None:
         """Poses ``(n, 3)`` of the odometry at moments ``(n,)`` [s], None when it does not say."""
@@ -97,7 +82,7 @@ class ScanTracker:
             self._track.mark()
             return 0.0
         motion = between(last, pose_odom)
-        shoved = self._newest_imu < self._shoved_until
+        shoved = self._shoves.is_shoved
         if _is_still(motion) and not shoved:
             return 1.0
         spread, self._scan_odom = self._track.motion_covariance(), pose_odom
