@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from mapping.errors import TestbedError
 from mapping.geometry import Pose, transform_points
+from nav.legs import bodies, has_neighbour
 from nav.movers_kernels import seen_through
 from nav.scan_points import ScanView
 
@@ -44,7 +45,7 @@ class MoversConfig:
     """Returns of neighbouring beams up to this far apart are of one leg [m]: 0.07 m apart at most,
     and the noise of two beams at 3 m, four sigmas."""
     same: float = 0.75
-    """Points up to this far apart belong to one thing [m]: two legs in stride."""
+    """Legs up to this far apart belong to one thing [m]: two in stride."""
     gate: float = 0.5
     """A thing seen again is at most this far from where it was expected [m]."""
     lost_after: float = 0.7
@@ -126,7 +127,7 @@ class Movers:
             mover.velocity = transform_points(turn, mover.velocity[None])[0]
 
     def _moving_places(self, newest: ScanView) -> list[NDArray[np.float64]]:
-        """Middles of the groups of points that lie where nothing was."""
+        """Middles of those whose points lie where nothing was."""
         config = self.config
         views = [
             view
@@ -152,8 +153,8 @@ class Movers:
         if not came.any():
             return []
         points, beams = near[came], newest.beams[is_near][came]
-        wide = _has_neighbour(points, beams, len(newest.ranges), config.whole)
-        return _middles(points[wide], config.same)
+        wide = has_neighbour(points, beams, len(newest.ranges), config.whole)
+        return bodies(points[wide], newest.origin, config.same)
 
     def _follow(self, stamp: float, places: list[NDArray[np.float64]]) -> None:
         """Match what moves with what moved before; forget what has not been seen for long."""
@@ -183,41 +184,3 @@ class Movers:
         speed = float(np.hypot(*velocity))
         mover.velocity = velocity * min(1.0, config.max_speed / max(speed, config.max_speed))
         mover.stamp, mover.sightings = stamp, mover.sightings + 1
-
-
-def _has_neighbour(
-    points: NDArray[np.float64], beams: NDArray[np.int64], count: int, apart: float
-) -> NDArray[np.bool_]:
-    """Which points ``(n, 2)`` have one of the next or the last beam within ``apart`` [m].
-
-    A leg is met by two beams side by side even 3 m away; a chair's by one or none, and one that the
-    earlier scans missed has not come since.
-
-    Args:
-        points: Where beams met something [m].
-        beams: Which beams these are ``(n,)``, ascending.
-        count: How many beams there are all round.
-        apart: How far apart the returns of one thing are [m].
-    """
-    gaps = np.hypot(*(np.roll(points, -1, axis=0) - points).T)
-    is_next = (np.roll(beams, -1) - beams) % count == 1
-    beside = is_next & (gaps < apart)
-    return np.asarray(beside | np.roll(beside, 1))
-
-
-def _middles(points: NDArray[np.float64], same: float) -> list[NDArray[np.float64]]:
-    """Means of the groups of points that hang together within ``same`` [m]."""
-    left = np.ones(len(points), dtype=np.bool_)
-    middles = []
-    while left.any():
-        group = np.flatnonzero(left)[:1]
-        left[group] = False
-        grown = 0
-        while grown < len(group):
-            gaps = np.hypot(*(points - points[group[grown]]).T)
-            joined = np.flatnonzero(left & (gaps < same))
-            left[joined] = False
-            group = np.concatenate((group, joined))
-            grown += 1
-        middles.append(points[group].mean(axis=0))
-    return middles

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from mapping.errors import TestbedError
 from mapping.geometry import Pose, transform_points
+from nav.legs import LEG_BEHIND
 from nav.movers import LEAST_SCANS, Mover, Movers, MoversConfig
 from nav.scan_points import ScanView
 from tests.nav.rooms import drive_through, furnished_room
@@ -156,7 +157,7 @@ def test_only_beams_that_went_farther_tell_that_nothing_was_there(
     movers = seen_after(earlier, with_leg(earlier, 87, 93, away))
     assert len(movers.known) == noticed
     if noticed:
-        assert movers.known[0].place == pytest.approx([0.0, away], abs=0.02)
+        assert movers.known[0].place == pytest.approx([0.0, away + LEG_BEHIND], abs=0.02)
 
 
 def test_it_takes_enough_scans_that_are_old_enough() -> None:
@@ -182,7 +183,7 @@ def test_two_legs_of_chairs_one_behind_the_other_are_not_one_leg() -> None:
 def test_a_leg_straight_ahead_is_met_by_the_first_and_the_last_beam() -> None:
     now = with_leg(with_leg(EMPTY, 0, 0, 2.0), 359, 359, 2.0)
     (mover,) = seen_after(EMPTY, now).known
-    assert mover.place == pytest.approx([2.0, 0.0], abs=0.02)
+    assert mover.place == pytest.approx([2.0 + LEG_BEHIND, 0.0], abs=0.02)
 
 
 def test_two_legs_in_stride_are_one_thing_and_two_people_are_two() -> None:
@@ -190,6 +191,16 @@ def test_two_legs_in_stride_are_one_thing_and_two_people_are_two() -> None:
     assert len(seen_after(EMPTY, stride).known) == 1
     people = with_leg(with_leg(EMPTY, 70, 73, 2.0), 110, 113, 2.0)
     assert len(seen_after(EMPTY, people).known) == 2
+
+
+def test_the_middle_lies_between_the_legs_however_little_one_hides_of_the_other() -> None:
+    stride = with_leg(with_leg(EMPTY, 79, 83, 1.3), 90, 91, 1.4)
+    (mover,) = seen_after(EMPTY, stride).known
+    legs = [
+        (away + LEG_BEHIND) * np.array([math.cos(angle), math.sin(angle)])
+        for away, angle in ((1.3, math.radians(81.0)), (1.4, math.radians(90.5)))
+    ]
+    assert mover.place == pytest.approx(np.mean(legs, axis=0), abs=0.01)
 
 
 def test_beyond_reach_nobody_is_of_any_concern() -> None:
