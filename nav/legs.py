@@ -9,26 +9,41 @@ LEG_BEHIND = 0.05
 ONE_LEG = 0.15
 """Points up to this far apart are of one leg [m]: it is 0.12 m thick."""
 
+NO_LEGS: NDArray[np.float64] = np.zeros((0, 2))
+"""Nobody."""
 
-def bodies(
-    points: NDArray[np.float64], origin: NDArray[np.float64], same: float
-) -> list[NDArray[np.float64]]:
-    """Middles ``(2,)`` [m] of those whose legs were met.
 
-    Each leg counts alike, however many beams met it: what half hides one leg behind the other does
-    not draw the middle to the other.
+def legs_of(points: NDArray[np.float64], origin: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Middles of legs ``(m, 2)`` [m] from where beams met them.
 
     Args:
-        points: Where beams met legs ``(n, 2)`` [m].
+        points: Where they did ``(n, 2)`` [m].
         origin: Where the sensor was ``(2,)`` [m].
-        same: Legs up to this far apart are of one body [m].
     """
     if len(points) == 0:
-        return []
+        return NO_LEGS
     offsets = points - origin
     aways = np.maximum(np.hypot(offsets[:, 0], offsets[:, 1]), LEG_BEHIND)
-    legs = _middles(points + LEG_BEHIND * offsets / aways[:, None], ONE_LEG)
-    return _middles(np.array(legs), same)
+    seen = hanging_together(points + LEG_BEHIND * offsets / aways[:, None], ONE_LEG)
+    return np.array([leg.mean(axis=0) for leg in seen])
+
+
+def parted(
+    legs: NDArray[np.float64], expected: NDArray[np.float64], gate: float
+) -> list[NDArray[np.float64]]:
+    """The legs ``(k, 2)`` [m] of each of those who stand together; one lot if they are of one.
+
+    Args:
+        legs: Legs that hang together ``(n, 2)`` [m].
+        expected: Where somebody is expected ``(m, 2)`` [m].
+        gate: Nobody is expected among legs of which none is within this of him [m].
+    """
+    gaps = np.linalg.norm(legs[:, None] - expected, axis=2)
+    there = np.flatnonzero((gaps < gate).any(axis=0))
+    if len(there) < 2:
+        return [legs]
+    owners = gaps[:, there].argmin(axis=1)
+    return [legs[owners == k] for k in range(len(there)) if np.any(owners == k)]
 
 
 def has_neighbour(
@@ -51,19 +66,19 @@ def has_neighbour(
     return np.asarray(beside | np.roll(beside, 1))
 
 
-def _middles(points: NDArray[np.float64], same: float) -> list[NDArray[np.float64]]:
-    """Means of the groups of points that hang together within ``same`` [m]."""
+def hanging_together(points: NDArray[np.float64], apart: float) -> list[NDArray[np.float64]]:
+    """The points ``(k, 2)`` of each group that hangs together within ``apart`` [m]."""
     left = np.ones(len(points), dtype=np.bool_)
-    middles = []
+    groups = []
     while left.any():
         group = np.flatnonzero(left)[:1]
         left[group] = False
         grown = 0
         while grown < len(group):
             gaps = np.hypot(*(points - points[group[grown]]).T)
-            joined = np.flatnonzero(left & (gaps < same))
+            joined = np.flatnonzero(left & (gaps < apart))
             left[joined] = False
             group = np.concatenate((group, joined))
             grown += 1
-        middles.append(points[group].mean(axis=0))
-    return middles
+        groups.append(points[group])
+    return groups

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from mapping.errors import TestbedError
 from mapping.geometry import Pose, transform_points
-from nav.legs import bodies, has_neighbour
+from nav.legs import NO_LEGS, hanging_together, has_neighbour, legs_of, parted
 from nav.movers_kernels import seen_through
 from nav.scan_points import ScanView
 
@@ -22,6 +22,10 @@ LEAST_SCANS = 3
 
 LEAST_SPEED = 0.15
 """What goes slower than this after a few sightings stands still [m/s]."""
+
+
+PACE_KEPT = 0.8
+"""What a second without going so fast leaves of a pace."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -77,6 +81,8 @@ class Mover:
     """When it was seen last [s]."""
     sightings: int = 1
     """In how many scans."""
+    pace: float = 0.0
+    """How fast it went of late [m/s]: while somebody turns, the velocity tells less."""
 
     @property
     def is_known_to_stand(self) -> bool:
@@ -106,7 +112,7 @@ class Movers:
         """Take a new scan; one without turn from beam to beam tells nothing."""
         if view.increment == 0.0:
             return
-        self._follow(view.stamp, self._moving_places(view))
+        self._follow(view.stamp, self._places(view.stamp, self._moving_legs(view)))
         self._views.append(view)
         while view.stamp - self._views[0].stamp > self.config.memory:
             self._views.popleft()
@@ -126,8 +132,8 @@ class Movers:
             mover.place = transform_points(jump, mover.place[None])[0]
             mover.velocity = transform_points(turn, mover.velocity[None])[0]
 
-    def _moving_places(self, newest: ScanView) -> list[NDArray[np.float64]]:
-        """Middles of those whose points lie where nothing was."""
+    def _moving_legs(self, newest: ScanView) -> NDArray[np.float64]:
+        """Middles of the legs ``(n, 2)`` whose points lie where nothing was."""
         config = self.config
         views = [
             view
@@ -138,7 +144,7 @@ class Movers:
         is_near = np.hypot(offsets[:, 0], offsets[:, 1]) < config.reach
         near = newest.points[is_near]
         if len(views) < LEAST_SCANS or len(near) == 0:
-            return []
+            return NO_LEGS
         counts = seen_through(
             near,
             np.array([view.origin for view in views]),
@@ -151,10 +157,24 @@ class Movers:
         )
         came = counts >= LEAST_SCANS
         if not came.any():
-            return []
+            return NO_LEGS
         points, beams = near[came], newest.beams[is_near][came]
         wide = has_neighbour(points, beams, len(newest.ranges), config.whole)
-        return bodies(points[wide], newest.origin, config.same)
+        return legs_of(points[wide], newest.origin)
+
+    def _places(self, stamp: float, legs: NDArray[np.float64]) -> list[NDArray[np.float64]]:
+        """Middles of those who walk on legs ``(n, 2)`` [m].
+
+        Each leg counts alike, however many beams met it: what one leg hides of the other does not
+        draw the middle. Two who pass each other are told apart by where they went.
+        """
+        config = self.config
+        expected = np.array([mover.at(stamp) for mover in self.known]).reshape(-1, 2)
+        return [
+            part.mean(axis=0)
+            for group in hanging_together(legs, config.same)
+            for part in parted(group, expected, config.gate)
+        ]
 
     def _follow(self, stamp: float, places: list[NDArray[np.float64]]) -> None:
         """Match what moves with what moved before; forget what has not been seen for long."""
@@ -183,4 +203,5 @@ class Movers:
         velocity = mover.velocity + gain * surprise / elapsed
         speed = float(np.hypot(*velocity))
         mover.velocity = velocity * min(1.0, config.max_speed / max(speed, config.max_speed))
+        mover.pace = max(float(np.hypot(*mover.velocity)), PACE_KEPT**elapsed * mover.pace)
         mover.stamp, mover.sightings = stamp, mover.sightings + 1

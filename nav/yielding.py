@@ -32,9 +32,8 @@ class YieldingConfig:
     touch: float = ROBOT_RADIUS + 0.20
     """Distance of centres at which legs may touch the robot [m]: it drives no nearer than this. Its
     corners lie 0.02 m outside its radius, and a slow walker's feet 0.02 m outside the stride."""
-    swing: float = 0.07
-    """A turning robot's rear corners come nearer to what is behind it by so much for every radian
-    [m]: they lie so far to either side."""
+    straight_away: float = 0.7
+    """A way leads straight away from somebody if the distance grows by this share of it."""
     stride: float = 0.3
     """A foot is as far ahead or behind as the middle goes in this time [s]."""
     horizon: float = 2.4
@@ -92,12 +91,13 @@ class Yielding:
             return wanted
         outlook = _Outlook(pose, time, movers, self.config)
         if time < self._aside_until:
-            if allowed(self._aside) and not outlook.drives_into(self._aside):
+            if allowed(self._aside) and not outlook.may_be_run_into(self._aside):
                 return self._aside
             self._aside_until = -math.inf
         for share in SHARES:
             twist = Twist(linear_x=share * wanted.linear_x, angular_z=share * wanted.angular_z)
-            if outlook.room(twist, self.config.committed) >= self.config.room:
+            has_room = outlook.room(twist, self.config.committed) >= self.config.room
+            if has_room and not outlook.may_be_run_into(twist):
                 return twist
         self._aside = self._step_aside(outlook, allowed)
         if self._aside != Twist():
@@ -113,7 +113,7 @@ class Yielding:
         for speed, turn in product(speeds, turns):
             twist = Twist(linear_x=speed, angular_z=turn)
             room = outlook.room(twist, config.aside_time)
-            if room > most and allowed(twist) and not outlook.drives_into(twist):
+            if room > most and allowed(twist) and not outlook.may_be_run_into(twist):
                 best, most = twist, room
         return best
 
@@ -132,29 +132,46 @@ class _Outlook:
         velocities = np.array([mover.velocity for mover in movers])
         ages = moments - np.array([mover.stamp for mover in movers])[:, None, None]
         self._places = places[:, None, None] + ages[..., None] * velocities[:, None, None]
+        self._seen, self._ages = places, time - np.array([mover.stamp for mover in movers])
+        self._paces = np.array([self._pace_of(mover) for mover in movers])
         self._doubt = config.doubt * self._times / np.array([[mover.sightings] for mover in movers])
+
+    def _pace_of(self, mover: Mover) -> float:
+        """How fast somebody may set out in another direction [m/s]."""
+        return max(mover.pace, self._config.doubt / mover.sightings)
 
     def room(self, twist: Twist, driven_for: float) -> float:
         """The least distance of centres [m] when a twist is driven so long [s], then none."""
         return float((self._gaps(twist, driven_for).min(axis=2) - self._doubt).min())
 
-    def drives_into(self, twist: Twist) -> bool:
-        """Whether a twist soon brings the robot within touch, and nearer than standing would.
+    def may_be_run_into(self, twist: Twist) -> bool:
+        """Whether the robot may still be moving when it touches somebody, if he turns now.
 
-        Where a contact cannot be helped, the robot at least stands.
+        People turn on the spot, and it takes a second until their way tells. Straight away from
+        somebody the robot may go, unless it is among his feet already, and stand it may always.
         """
-        soon = self._times <= self._config.committed
-        gaps, standing = self._gaps(twist, self._config.committed), self._gaps(Twist(), 0.0)
-        swing = self._config.swing * abs(twist.angular_z) * self._times[:, None]
-        nearer = (gaps < self._config.touch) & (gaps < standing + swing)
-        return bool(nearer[:, soon].any())
+        if twist == Twist():
+            return False
+        config = self._config
+        soon = self._times[self._times <= config.committed]
+        robot = self._driven(twist, soon)
+        gaps = np.linalg.norm(self._seen[:, None] - robot, axis=2)
+        walked = self._paces[:, None] * (self._ages[:, None] + soon)
+        in_reach = (gaps - walked < config.touch).any(axis=1)
+        way = float(np.hypot(*(robot[-1] - robot[0])))
+        flees = (gaps[:, -1] - gaps[:, 0] >= config.straight_away * way) & (way > 0.0)
+        is_close = gaps[:, 0] < config.room
+        return bool((in_reach & (is_close | ~flees)).any())
 
     def _gaps(self, twist: Twist, driven_for: float) -> NDArray[np.float64]:
         """Distances of centres to everybody, at every time and part of a stride ``(m, t, s)``."""
-        driven = np.minimum(self._times, driven_for)
-        half_turn = 0.5 * twist.angular_z * driven
-        chord = twist.linear_x * driven * np.sinc(half_turn / np.pi)
+        robot = self._driven(twist, np.minimum(self._times, driven_for))
+        return np.asarray(np.linalg.norm(self._places - robot[:, None], axis=3))
+
+    def _driven(self, twist: Twist, times: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Where the robot is after driving a twist for some times ``(t,)``: ``(t, 2)`` [m]."""
+        half_turn = 0.5 * twist.angular_z * times
+        chord = twist.linear_x * times * np.sinc(half_turn / np.pi)
         heading = self._pose[2] + half_turn
         way = chord[:, None] * np.column_stack((np.cos(heading), np.sin(heading)))
-        robot: NDArray[np.float64] = self._pose[:2] + way
-        return np.asarray(np.linalg.norm(self._places - robot[:, None], axis=3))
+        return np.asarray(self._pose[:2] + way)

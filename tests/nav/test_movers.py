@@ -167,42 +167,6 @@ def test_it_takes_enough_scans_that_are_old_enough() -> None:
     assert len(seen_after(EMPTY, now, scans=LEAST_SCANS + 1).known) == 1
 
 
-def test_a_thing_of_one_beam_may_have_been_missed_before() -> None:
-    """A chair's leg 2.5 m away lies between two beams as often as not."""
-    one, other = with_leg(EMPTY, 90, 90, 2.5), with_leg(EMPTY, 94, 94, 2.5)
-    assert seen_after(EMPTY, one).known == []
-    assert seen_after(EMPTY, np.minimum(one, other)).known == []
-    assert len(seen_after(EMPTY, with_leg(EMPTY, 90, 91, 2.5)).known) == 1
-
-
-def test_two_legs_of_chairs_one_behind_the_other_are_not_one_leg() -> None:
-    now = with_leg(with_leg(EMPTY, 90, 90, 2.2), 91, 91, 2.5)
-    assert seen_after(EMPTY, now).known == []
-
-
-def test_a_leg_straight_ahead_is_met_by_the_first_and_the_last_beam() -> None:
-    now = with_leg(with_leg(EMPTY, 0, 0, 2.0), 359, 359, 2.0)
-    (mover,) = seen_after(EMPTY, now).known
-    assert mover.place == pytest.approx([2.0 + LEG_BEHIND, 0.0], abs=0.02)
-
-
-def test_two_legs_in_stride_are_one_thing_and_two_people_are_two() -> None:
-    stride = with_leg(with_leg(EMPTY, 80, 83, 2.0), 97, 100, 2.0)
-    assert len(seen_after(EMPTY, stride).known) == 1
-    people = with_leg(with_leg(EMPTY, 70, 73, 2.0), 110, 113, 2.0)
-    assert len(seen_after(EMPTY, people).known) == 2
-
-
-def test_the_middle_lies_between_the_legs_however_little_one_hides_of_the_other() -> None:
-    stride = with_leg(with_leg(EMPTY, 79, 83, 1.3), 90, 91, 1.4)
-    (mover,) = seen_after(EMPTY, stride).known
-    legs = [
-        (away + LEG_BEHIND) * np.array([math.cos(angle), math.sin(angle)])
-        for away, angle in ((1.3, math.radians(81.0)), (1.4, math.radians(90.5)))
-    ]
-    assert mover.place == pytest.approx(np.mean(legs, axis=0), abs=0.01)
-
-
 def test_beyond_reach_nobody_is_of_any_concern() -> None:
     far = np.full(360, math.inf)
     reach = MoversConfig().reach

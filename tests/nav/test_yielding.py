@@ -162,20 +162,6 @@ def test_it_steps_not_into_a_second_person_to_get_out_of_the_first_ones_way() ->
     assert Yielding().limit(AHEAD, HERE, 0.0, [crossing, behind], straight_back) == Twist()
 
 
-def test_it_turns_not_a_corner_into_one_who_stands_close_by() -> None:
-    crossing, abeam = person(-1.2, 0.0, 0.8, 0.0), person(0.0, 0.3, 0.0, 0.16)
-
-    def round_to_the_right(twist: Twist) -> bool:
-        return twist.linear_x > 0.0 and twist.angular_z < 0.0
-
-    def step(people: list[Mover], config: YieldingConfig) -> Twist:
-        return Yielding(config).limit(AHEAD, HERE, 0.0, people, round_to_the_right)
-
-    assert step([crossing], CONFIG).angular_z < 0.0
-    assert step([crossing, abeam], CONFIG) == Twist()
-    assert step([crossing, abeam], YieldingConfig(swing=1e-6)).angular_z < 0.0
-
-
 def test_a_step_that_gains_too_little_is_not_taken() -> None:
     walker = person(1.2, 0.0, -0.8, 0.0)
     twist = Yielding(YieldingConfig(worth=0.5)).limit(AHEAD, HERE, 0.0, [walker], anywhere)
