@@ -82,7 +82,7 @@ class Outlook:
         fresh = costmap.without_marks()
         places.mark_sure(fresh)
         openings = find_frontiers(fresh, config.opening, places.former_walls)
-        openings = _apart_from(self._looked_at(given_up), openings, fresh)
+        openings = _apart_from(self._looked_at(given_up, now), openings, fresh)
         self.frontiers += openings
         open_ones = [item for item in openings if not given_up.holds(item)]
         self._searches.append(
@@ -92,12 +92,13 @@ class Outlook:
         through = self._opening_finder.find(field, open_ones, visited, robot)
         return given_up.not_in_vain(now + through)
 
-    def _looked_at(self, given_up: GivenUp) -> list[Frontier]:
-        """The frontiers that some place sees, or saw before they were given up."""
+    def _looked_at(self, given_up: GivenUp, worth: Sequence[Viewpoint]) -> list[Frontier]:
+        """The frontiers that are worth a look as they are, or were until they were given up."""
+        worthwhile = {id(viewpoint.frontier) for viewpoint in worth}
         return [
             item
             for item in self.frontiers
-            if self._finder.has_view(item) or given_up.reason(item) not in (None, NO_VIEW)
+            if id(item) in worthwhile or given_up.reason(item) not in (None, NO_VIEW, NOT_WORTH_IT)
         ]
 
     def note_left_over(self, given_up: GivenUp) -> None:

@@ -8,7 +8,7 @@ import pytest
 from nav.explorer import NO_HEADWAY, NOTHING_NEW
 from nav.explorer_config import ExplorerConfig
 from nav.given_up import GivenUp
-from nav.outlook import NO_VIEW, Outlook
+from nav.outlook import NO_VIEW, NOT_WORTH_IT, Outlook
 from nav.place_memory import PlaceMemory
 from nav.planner import CostField
 from nav.scan_points import ScanView
@@ -55,8 +55,10 @@ def viewpoints(*, given_up_for: str | None) -> list[Viewpoint]:
     return outlook.viewpoints(field, places, given_up, HERE)
 
 
-@pytest.mark.parametrize("reason", [None, NO_VIEW])
-def test_an_opening_beside_a_frontier_that_no_place_sees_is_looked_at(reason: str | None) -> None:
+@pytest.mark.parametrize("reason", [None, NO_VIEW, NOT_WORTH_IT])
+def test_an_opening_beside_a_frontier_that_is_not_worth_a_look_is_looked_at(
+    reason: str | None,
+) -> None:
     found = viewpoints(given_up_for=reason)
     assert found
     assert all(1.0 < viewpoint.place[0] < 2.2 for viewpoint in found)
