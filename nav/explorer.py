@@ -32,6 +32,7 @@ from nav.navigator import (
 from nav.outlook import Outlook
 from nav.place_memory import PlaceMemory
 from nav.planner import CostField
+from nav.pursuit import Pursuit
 from nav.viewpoint import Viewpoint, gain_at
 
 NOTHING_NEW = "its viewpoints showed nothing new"
@@ -68,9 +69,9 @@ class FrontierExplorer:
         self._task = Task.EXPLORE
         self._home: Pose | None = None
         self._target: Viewpoint | None = None
-        self._last_chosen: Viewpoint | None = None
         self._goal: np.ndarray | None = None
         self._tries = 0
+        self._pursuit = Pursuit()
         self._shift = 0.0
         self._decided_at = self._glanced_at = self._looked_at = -np.inf
 
@@ -261,18 +262,16 @@ class FrontierExplorer:
     def _set_out(self, field: CostField, goal: np.ndarray, target: Viewpoint | None) -> None:
         if self._goal is None or float(np.hypot(*(self._goal - goal))) > self.config.arrived:
             self._driver.restart_headway()
-        if target is not None:
-            self._note_goal(target)
+        now = self._driver.time
+        if target is not None and self._pursuit.take_up(target, now, self._costmap.free_area):
+            self.goals = (*self.goals, ChosenGoal.at(now, target.place, target.frontier.middle))
+            self._tries = 0  # for one frontier, recoveries add up
+        if target is not None and self._pursuit.is_in_vain(now):
+            self._given_up.give_up(target.frontier, NO_HEADWAY)
+            self._forget_goal()
+            return
         self._goal, self._target = goal.copy(), target
         self._driver.set_path(field.path_to(goal))
-
-    def _note_goal(self, target: Viewpoint) -> None:
-        """Keep a goal that shows another frontier than the last; for one, recoveries add up."""
-        if self._last_chosen is None or not target.is_near(self._last_chosen):
-            goal = ChosenGoal.at(self._driver.time, target.place, target.frontier.middle)
-            self.goals = (*self.goals, goal)
-            self._tries = 0
-        self._last_chosen = target
 
     def _start_recovery(self, in_vain: str = STUCK) -> None:
         """Recover; after too many look for another way, and give the robot up after far too many.
