@@ -33,8 +33,8 @@ class ManoeuvreConfig:
     headings: int = 48
     """Turns that make a full circle: 7.5 degrees each."""
     reach: float = 1.3
-    """A way out leads no farther than this from the start, along x or y [m]: through a gap as deep
-    as three robots are long, and to where there is room behind it."""
+    """A way out leads no farther than this from the start, along x or y [m]: out of a gap a metre
+    deep, and on to where there is room to turn."""
     turn_price: float = 0.02
     """What a turn costs, as a way driven [m]: as much as a straight move, it takes as long."""
     switch_price: float = 0.08

@@ -33,7 +33,8 @@ class YieldingConfig:
     """Distance of centres at which legs may touch the robot [m]: it drives no nearer than this. Its
     corners lie 0.02 m outside its radius, and a slow walker's feet 0.02 m outside the stride."""
     straight_away: float = 0.7
-    """A way leads straight away from somebody if the distance grows by this share of it."""
+    """A way leads straight away from somebody if the distance grows by this share of it:
+    within 45 degrees."""
     stride: float = 0.3
     """A foot is as far ahead or behind as the middle goes in this time [s]."""
     horizon: float = 2.4
@@ -130,9 +131,10 @@ class _Outlook:
         moments = time + self._times[:, None] + leads
         places = np.array([mover.place for mover in movers])
         velocities = np.array([mover.velocity for mover in movers])
-        ages = moments - np.array([mover.stamp for mover in movers])[:, None, None]
+        stamps = np.array([mover.stamp for mover in movers])
+        ages = moments - stamps[:, None, None]
         self._places = places[:, None, None] + ages[..., None] * velocities[:, None, None]
-        self._seen, self._ages = places, time - np.array([mover.stamp for mover in movers])
+        self._seen, self._ages = places, time - stamps
         self._paces = np.array([self._pace_of(mover) for mover in movers])
         self._doubt = config.doubt * self._times / np.array([[mover.sightings] for mover in movers])
 

@@ -46,11 +46,9 @@ def test_whoever_turns_on_the_spot_finds_the_robot_standing_or_going_away(
     walker.pace = max(speed, pace)
     twist = Yielding().limit(AHEAD, HERE, 0.0, [walker], anywhere)
     turned = replace(walker, velocity=-walker.pace / away * walker.place)
-    gaps = []
     for k in range(11):
         pose = moved(HERE, twist, 0.05 * k)
-        gaps.append(math.dist(pose[:2], turned.at(0.05 * k)))
-        is_touched = gaps[-1] < CONFIG.touch - 0.005
+        is_touched = math.dist(pose[:2], turned.at(0.05 * k)) < CONFIG.touch - 0.005
         is_nearer = math.dist(moved(pose, twist, 0.01)[:2], walker.place) < math.dist(
             pose[:2], walker.place
         )
