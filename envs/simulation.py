@@ -24,6 +24,7 @@ from envs.presets import preset
 from envs.random_pedestrians import check_people, random_pedestrians
 from envs.scene import build_scene, place, planar_pose, planar_velocity
 from envs.schedule import IMU_STEPS, is_odometry_step, next_event
+from envs.stage_clock import stop_stage_clock
 from envs.walkers import Walkers
 from envs.wheel_encoders import (
     ODOMETRY_PRESETS,
@@ -89,6 +90,8 @@ class Simulation:
         walking = len(plan.pedestrians) + people
         self.model = build_scene(plan, people=walking)
         self.data = mujoco.MjData(self.model)
+        self._qpos, self._qvel = self.data.qpos, self.data.qvel  # made once: this is asked often
+        stop_stage_clock()
         self._walkers = Walkers(self.model, walking)
         self._contacts = ContactCounter(self.model, self._walkers.geoms)
         self._lidar = Lidar(self.model, preset("lidar", lidar, LIDAR_PRESETS))
@@ -106,12 +109,12 @@ class Simulation:
     @property
     def pose_world(self) -> Pose:
         """True pose ``(3,)`` of base_footprint in the world."""
-        return planar_pose(self.data.qpos)
+        return planar_pose(self._qpos)
 
     @property
     def velocity_base(self) -> tuple[float, float]:
         """True forward speed [m/s] and turn rate [rad/s] of base_footprint."""
-        return planar_velocity(self.data.qpos, self.data.qvel)
+        return planar_velocity(self._qpos, self._qvel)
 
     @property
     def contacts(self) -> int:
@@ -148,11 +151,11 @@ class Simulation:
         self._let_people_walk(start)
         mujoco.mj_step(self.model, self.data, nstep=SETTLE_STEPS)
         self._contacts.reset()
-        self._positions = [self.data.qpos[:7].copy()]
-        self._velocities = [self.data.qvel[:6].copy()]
+        self._positions = [self._qpos[:7].copy()]
+        self._velocities = [self._qvel[:6].copy()]
         lidar_rng, encoders_rng, imu_rng = self._rng.spawn(3)
         self._lidar.reset(lidar_rng)
-        self._encoders.reset(encoders_rng, _wheel_angles(self.data.qpos), self.pose_world)
+        self._encoders.reset(encoders_rng, _wheel_angles(self._qpos), self.pose_world)
         self._imu.reset(imu_rng)
         self._imu_yaw = 0.0
 
@@ -161,14 +164,14 @@ class Simulation:
 
         Time, odometry and IMU go on as if nothing had been: neither wheels nor gyroscope notice.
         """
-        wheel_angles = self.data.qpos[7:9].copy()
+        wheel_angles = self._qpos[7:9].copy()
         place(self.model, self.data, np.array(pose))
-        self.data.qpos[7:9] = wheel_angles
+        self._qpos[7:9] = wheel_angles
         if len(self._walkers):
             self._walkers.stand_up(self.data, self.time)
         mujoco.mj_step(self.model, self.data, nstep=SETTLE_STEPS)
-        self._positions = [self.data.qpos[:7].copy()]
-        self._velocities = [self.data.qvel[:6].copy()]
+        self._positions = [self._qpos[:7].copy()]
+        self._velocities = [self._qvel[:6].copy()]
 
     def command(self, linear: float, angular: float) -> None:
         """Drive at these speeds [m/s, rad/s] from now on, for 0.5 s at most.
@@ -195,7 +198,7 @@ class Simulation:
             else:
                 mujoco.mj_step(self.model, self.data, nstep=event - self._step)
                 self._step = event
-                self._contacts.count(self.data, self._step, self.data.qpos, self.data.qvel)
+                self._contacts.count(self.data, self._step, self._qpos, self._qvel)
             self._observe()
         return self._collect(begin)
 
@@ -207,7 +210,7 @@ class Simulation:
         Raises:
             TestbedError: There is no such camera, the size is not drawable, or there is no OpenGL.
         """
-        return self._camera.picture(self.data.qpos, camera, width, height, self.data.mocap_pos)
+        return self._camera.picture(self._qpos, camera, width, height, self.data.mocap_pos)
 
     def close(self) -> None:
         """Give the OpenGL context back; may be called again."""
@@ -228,7 +231,7 @@ class Simulation:
         while self._step < event:
             near = self._walkers.move(self.data, self.time)
             steps = 1 if near else event - self._step
-            position, velocity = self.data.qpos[:2].copy(), self.data.qvel[:6].copy()
+            position, velocity = self._qpos[:2].copy(), self._qvel[:6].copy()
             mujoco.mj_step(self.model, self.data, nstep=steps)
             self._step += steps
             self._contacts.count(self.data, self._step, position, velocity)
@@ -238,15 +241,15 @@ class Simulation:
         if self._step - self._command_step >= _TIMEOUT_STEPS:
             self.data.ctrl[:] = 0.0
         if self._step % IMU_STEPS == 0:
-            self._positions.append(self.data.qpos[:7].copy())
-            self._velocities.append(self.data.qvel[:6].copy())
+            self._positions.append(self._qpos[:7].copy())
+            self._velocities.append(self._qvel[:6].copy())
         if self._step % BLOCK_STEPS == 0:
             base_states = np.array(self._positions[-_BLOCK_STATES:])
             ranges = self._lidar.cast_block(self.data, base_states, self._feet_of_block())
             if ranges is not None:
                 self._scan = (self.time - LIDAR_SCAN_TIME, ranges)
         if is_odometry_step(self._step):
-            self._wheels.append((self._step, self.data.qpos[:9].copy(), self.data.qvel[:6].copy()))
+            self._wheels.append((self._step, self._qpos[:9].copy(), self._qvel[:6].copy()))
 
     def _feet_of_block(self) -> NDArray[np.float64] | None:
         """Where the legs were at the times of the block's states ``(3, m, 2)`` [m], if any."""
