@@ -32,6 +32,10 @@ SURPRISING = 11.3
 """A scan this far from the prediction, in squared standard deviations, was predicted wrongly: one
 in a hundred lies farther out (chi-square, three degrees of freedom)."""
 
+SLIP = np.diag(np.square([0.1, 0.1, 0.1]))
+"""Covariance of what odometry may do at any time, however sure it is [m^2, m^2, rad^2]: wheels spin
+on a sill, a cart is pushed, messages are lost."""
+
 NOTHING_TOLD = 1.0
 """Information along each axis [1/m^2, 1/m^2, 1/rad^2] of a scan that tells nothing."""
 
@@ -69,6 +73,11 @@ class MatcherConfig:
     """The search goes no farther than this [m]."""
     widest_turn: float = 0.5
     """Nor farther than this [rad]."""
+    second_look: float = 5.0
+    """How many times as far ``match_twice`` searches for a scan that was not found, or poorly:
+    odometry that slipped once errs by far more than it says."""
+    better: float = 0.15
+    """What is found there must explain so much more of the scan."""
 
     def __post_init__(self) -> None:
         """Refuse figures that make no matcher."""
@@ -165,6 +174,30 @@ def match_scan(
         seen=predicted + offset,
         seen_covariance=seen_covariance,
     )
+
+
+def match_twice(
+    field: HitField,
+    cloud: ScanCloud,
+    predicted: ArrayLike,
+    covariance: NDArray[np.float64],
+    config: MatcherConfig,
+) -> Match:
+    """Match a scan as ``match_scan`` does; look farther away if little of it was found.
+
+    Of eight copies of the Intel Research Lab log whose odometry errs by a quarter of each turn and
+    a tenth of each way, single scans refused spoilt seven maps, by up to 29 m; so two. What the
+    second look finds is believed only if it is sure and explains much more: of a place that has
+    changed no pose explains much.
+    """
+    first = match_scan(field, cloud, predicted, covariance, config)
+    is_good = not first.refused and first.score >= config.sure_score
+    if is_good or len(cloud) < config.sure_points:
+        return first
+    wide = config.second_look**2 * covariance + SLIP
+    second = match_scan(field, cloud, predicted, wide, config)
+    least = max(config.sure_score, first.score + config.better)
+    return first if second.refused or second.score < least else second
 
 
 def weighed_anew(

@@ -15,7 +15,7 @@ from mapping.slam.local_map import LocalMap
 from mapping.slam.odometry_calibration import OdometryCalibration
 from mapping.slam.scan_cloud import ScanCloud
 from mapping.slam.scan_match_config import ScanMatchConfig
-from mapping.slam.scan_matcher import match_scan
+from mapping.slam.scan_matcher import match_twice
 from mapping.slam.shove_detector import ShoveDetector
 
 START_COVARIANCE = np.diag(np.square([0.004, 0.004, 0.0015]))
@@ -99,7 +99,7 @@ class ScanTracker:
         self._reckon(corrected, spread)
         covariance = carried(self.covariance, self.pose, predicted, spread)
         self.local.follow(near, view_of(predicted, cloud))
-        match = match_scan(self.local.field, cloud, predicted, covariance, self._matcher)
+        match = match_twice(self.local.field, cloud, predicted, covariance, self._matcher)
         if not match.refused:
             self._unmatched = np.zeros(2)
         if not match.refused and not shoved:
