@@ -5,6 +5,7 @@ import os
 import pty
 import re
 import select
+import signal
 import struct
 import subprocess
 import sys
@@ -104,5 +105,9 @@ class Terminal:
 
 
 def _have_own_terminal() -> None:
-    """Make stdin the terminal that Ctrl-C comes from."""
+    """Make stdin the terminal that Ctrl-C comes from, and have it heard.
+
+    Whoever runs the tests in the background may have them ignore it, and children inherit that.
+    """
     fcntl.ioctl(0, termios.TIOCSCTTY, 0)
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
