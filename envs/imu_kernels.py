@@ -1,4 +1,4 @@
-"""Numba kernels of the IMU: what its accelerometer feels, and the filter for its attitude."""
+"""Numba kernels of the IMU: what its gyroscope and accelerometer feel, and its attitude filter."""
 
 import math
 
@@ -41,6 +41,42 @@ def specific_forces(
         forces[i, 0], forces[i, 1], forces[i, 2] = rotate_back(halfway, gained)
         attitude, before = next_attitude, after
     return forces
+
+
+@njit(cache=True)
+def mean_rates(positions: NDArray[np.float64], period: float) -> NDArray[np.float64]:
+    """Mean angular velocity between states ``(n, 3)`` [rad/s], in the sensor's axes.
+
+    Turning evenly at such a rate leads from one attitude to the next: the rates add up to the
+    turns, whatever shook the sensor between two states.
+
+    Args:
+        positions: Position and quaternion (w, x, y, z) of base_link ``(n + 1, 7)`` in the world.
+        period: Time between states [s].
+    """
+    rates = np.empty((len(positions) - 1, 3))
+    for i in range(len(rates)):
+        a, b, c, d = positions[i, 3], positions[i, 4], positions[i, 5], positions[i, 6]
+        w, x, y, z = (
+            positions[i + 1, 3],
+            positions[i + 1, 4],
+            positions[i + 1, 5],
+            positions[i + 1, 6],
+        )
+        cos = a * w + b * x + c * y + d * z
+        p = a * x - b * w - c * z + d * y
+        q = a * y + b * z - c * w - d * x
+        r = a * z - b * y + c * x - d * w
+        sin = math.sqrt(p * p + q * q + r * r)
+        if cos < 0.0:  # the same turn, by the shorter way
+            cos, p, q, r = -cos, -p, -q, -r
+        share = 2.0 * math.atan2(sin, cos) / sin if sin > 0.0 else 2.0
+        rates[i, 0], rates[i, 1], rates[i, 2] = (
+            share * p / period,
+            share * q / period,
+            share * r / period,
+        )
+    return rates
 
 
 @njit(cache=True)

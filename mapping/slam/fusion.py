@@ -122,7 +122,7 @@ class FusedTrack:
         config = self.config
         duration = row[0] - last[0]
         motion = _between(last, row)
-        gyro = turn_between(self._rates, last[0], row[0], config.gyro_gap)
+        gyro = turn_between(self._rates, last[0], row[0], config.gyro_window, config.gyro_gap)
         speed, rate = row[4:6]
         if self._is_still(motion, gyro):
             self._still_time += duration

@@ -47,6 +47,9 @@ class FusionConfig:
     """How likely that is, 0 to 1 [assumption]."""
     gyro_bias_walk: float = 1e-6
     """Change of that error in one second [rad/s], a random walk [assumption: warming up]."""
+    gyro_window: float = 0.01
+    """A reading is the mean rate of so long before its stamp [s]: the time between a Burger's, and
+    about what its gyroscope's low-pass filter of 41 Hz makes (OpenCR MPU9250.cpp@2bd5e0c)."""
     gyro_gap: float = 0.1
     """Readings farther apart than this [s] leave the turn between them to the odometry."""
     standing_way: float = 1e-4

@@ -43,14 +43,19 @@ def keep_rates(kept: Array, new: Array, since: float, fastest: float, most: int)
 
 @njit(cache=True)
 def turn_between(
-    rates: Array, begin: float, end: float, widest_gap: float
+    rates: Array, begin: float, end: float, window: float, widest_gap: float
 ) -> tuple[float, float, float, bool]:
-    """What the gyroscope turned from ``begin`` to ``end`` [s], by the trapezoidal rule.
+    """What the gyroscope turned from ``begin`` to ``end`` [s].
+
+    A reading is the mean rate of the window before its stamp, no farther back than the reading
+    before. Between windows the rate goes along a line; before the first reading and after the last
+    it is theirs.
 
     Args:
         rates: Readings ``(n, 2)`` of stamp [s] and rate [rad/s], stamps rising.
         begin: Start of the interval [s].
         end: Its end [s].
+        window: How long a reading is the mean of [s]; 0 is a rate of the moment.
         widest_gap: Readings farther apart than this, or from the ends, do not tell [s].
 
     Returns:
@@ -64,18 +69,28 @@ def turn_between(
     place = 0
     while place < count and rates[place, 0] <= begin:
         place += 1
-    stamp, rate = begin, _rate_before(rates, place, begin)
+    stamp = begin
     while stamp < end:
-        if 0 < place < count and rates[place, 0] - rates[place - 1, 0] > widest_gap:
+        before, after = rates[max(place - 1, 0)], rates[min(place, count - 1)]
+        gap = after[0] - before[0]
+        if gap > widest_gap:
             return angle, squares, fastest, False
-        next_stamp = min(rates[place, 0], end) if place < count else end
-        next_rate = _rate_before(rates, place, next_stamp)
-        step = next_stamp - stamp
+        opens = after[0] - window if gap > 0.0 else stamp  # beyond the ends one reading holds
+        until = min(after[0], end) if place < count else end
+        if stamp < opens:
+            until = min(until, opens)
+            slope = (after[1] - before[1]) / (opens - before[0])
+            rate = before[1] + slope * (stamp - before[0])
+            next_rate = before[1] + slope * (until - before[0])
+        else:
+            rate = next_rate = after[1]
+        step = until - stamp
         angle += 0.5 * (rate + next_rate) * step
         squares += step * step
         fastest = max(fastest, abs(rate), abs(next_rate))
-        stamp, rate = next_stamp, next_rate
-        place += 1
+        stamp = until
+        if place < count and stamp >= rates[place, 0]:
+            place += 1
     return angle, squares, fastest, True
 
 
@@ -164,16 +179,6 @@ def correct(
         state[i] += gain[i] * innovation
     _mirror(covariance - total * np.outer(gain, gain), covariance)
     return True
-
-
-@njit(cache=True)
-def _rate_before(rates: Array, place: int, stamp: float) -> float:
-    """The rate at a moment no later than reading ``place``, on the line from the one before."""
-    if place == 0 or place == len(rates):
-        return float(rates[max(place - 1, 0), 1])
-    before, after = rates[place - 1], rates[place]
-    share = (stamp - before[0]) / (after[0] - before[0])
-    return float(before[1] + share * (after[1] - before[1]))
 
 
 @njit(cache=True)

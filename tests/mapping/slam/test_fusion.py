@@ -73,7 +73,11 @@ def test_turning_on_the_spot_it_finds_the_least_squares_solution() -> None:
     """Without scale errors the turn is linear in the bias: a batch solves for all at once."""
     rng = np.random.default_rng(3)
     config = FusionConfig(
-        turn_scale=0.0, gyro_bias_walk=0.0, calibrated=0.0, heading_from="encoders"
+        turn_scale=0.0,
+        gyro_bias_walk=0.0,
+        calibrated=0.0,
+        gyro_window=0.0,
+        heading_from="encoders",
     )
     count, dt = 40, 0.05
     true_rates = rng.uniform(0.4, 1.2, count + 1)

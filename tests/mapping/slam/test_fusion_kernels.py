@@ -14,24 +14,54 @@ def readings(rng: np.random.Generator, count: int) -> NDArray[np.float64]:
     return np.column_stack((stamps, rng.uniform(-2.0, 2.0, count)))
 
 
+def rate_at(rates: NDArray[np.float64], window: float, stamp: float) -> float:
+    """The rate at a moment: constant within a reading's window, along a line between windows."""
+    after = int(np.searchsorted(rates[:, 0], stamp))
+    if after in (0, len(rates)):
+        return float(rates[max(after - 1, 0), 1])
+    (was_at, was), (is_at, is_now) = rates[after - 1], rates[after]
+    opens = max(is_at - window, was_at)
+    if stamp >= opens:
+        return float(is_now)
+    return float(was + (is_now - was) * (stamp - was_at) / (opens - was_at))
+
+
 @given(
-    seed=st.integers(0, 10_000), count=st.integers(2, 30), shares=st.tuples(*[st.floats(0, 1)] * 2)
+    seed=st.integers(0, 10_000),
+    count=st.integers(1, 30),
+    shares=st.tuples(*[st.floats(0, 1)] * 2),
+    window=st.sampled_from([0.0, 0.01, 0.05, 0.2]),
 )
-def test_the_turn_is_the_area_under_the_line_through_the_readings(
-    seed: int, count: int, shares: tuple[float, float]
+def test_the_turn_is_the_area_under_the_readings_windows_and_the_lines_between(
+    seed: int, count: int, shares: tuple[float, float], window: float
 ) -> None:
     rates = readings(np.random.default_rng(seed), count)
     first, last = rates[0, 0] - 0.05, rates[-1, 0] + 0.05
     begin, end = sorted(first + np.array(shares) * (last - first))
-    angle, squares, fastest, is_covered = turn_between(rates, begin, end, GAP)
-    inside = rates[(rates[:, 0] > begin) & (rates[:, 0] < end), 0]
-    knots = np.concatenate(([begin], inside, [end]))
-    heights = np.interp(knots, rates[:, 0], rates[:, 1])  # holds the ends, as the kernel does
+    angle, squares, fastest, is_covered = turn_between(rates, begin, end, window, GAP)
+    opens = np.maximum(rates[1:, 0] - window, rates[:-1, 0])
+    inside = np.union1d(rates[:, 0], opens)
+    knots = np.concatenate(([begin], inside[(inside > begin) & (inside < end)], [end]))
+    steps = np.diff(knots)
+    thirds = [
+        [rate_at(rates, window, a + k / 3.0 * b) for k in (1, 2)]
+        for a, b in zip(knots, steps, strict=False)
+    ]
+    heights = np.array(thirds)
     assert is_covered
-    assert angle == pytest.approx(np.trapezoid(heights, knots), abs=1e-12)
-    assert squares == pytest.approx(np.sum(np.diff(knots) ** 2), abs=1e-12)
-    if end > begin:
-        assert fastest == pytest.approx(np.abs(heights).max())
+    assert angle == pytest.approx(np.sum(heights.mean(axis=1) * steps), abs=1e-9)
+    assert squares == pytest.approx(np.sum(steps**2), abs=1e-12)
+    if steps.min() > 1e-6:
+        ends = heights @ [[2.0, -1.0], [-1.0, 2.0]]  # along the line, to both ends of each piece
+        assert fastest == pytest.approx(np.abs(ends).max(), abs=1e-6)
+
+
+def test_readings_that_are_means_add_up_to_the_turn_however_the_robot_shook() -> None:
+    rng = np.random.default_rng(1)
+    yaws = np.cumsum(rng.normal(0.0, 0.02, 101))  # 10 ms apart
+    rates = np.column_stack((np.arange(1, 101) / 100.0, np.diff(yaws) / 0.01))
+    angle, *_ = turn_between(rates, 0.2, 0.9, 0.01, GAP)
+    assert angle == pytest.approx(yaws[90] - yaws[20], abs=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -49,7 +79,7 @@ def test_a_gap_in_the_readings_leaves_the_turn_untold(
     stamps: list[float], begin: float, end: float
 ) -> None:
     rates = np.column_stack((stamps, np.ones(len(stamps)))).reshape(-1, 2)
-    assert not turn_between(rates, begin, end, GAP)[3]
+    assert not turn_between(rates, begin, end, 0.01, GAP)[3]
 
 
 def test_readings_are_kept_from_the_last_before_the_newest_odometry_on() -> None:
