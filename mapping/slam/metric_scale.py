@@ -23,12 +23,19 @@ class MetricScaleConfig:
     33 mm under load), of worn or soft ones, of ones of which nothing is known [assumptions]."""
     wheel_shares: tuple[float, ...] = (0.5, 0.45, 0.05)
     """How likely each of these is [assumption]."""
+    surer: float = 3.0
+    """How many times as sure a disagreement is as the calibration of the odometry says, which takes
+    the errors of matches to be independent: where one way is matched too long, the next comes out
+    too short. In 47 runs through nine worlds what it had learned was off by 0.15 to 0.35 of the
+    standard deviation that it gave, rms of each world."""
 
     def __post_init__(self) -> None:
         """Refuse figures that are no errors or no shares."""
         sigmas, shares = self.wheel_sigmas, self.wheel_shares
         if not (sigmas and all(math.isfinite(sigma) and sigma > 0.0 for sigma in sigmas)):
             raise TestbedError(f"metric scale wheel_sigmas: {sigmas}; must be finite and above 0")
+        if not (math.isfinite(self.surer) and self.surer > 0.0):
+            raise TestbedError(f"metric scale surer: {self.surer}; must be finite and above 0")
         if len(shares) != len(sigmas) or not all(0.0 <= share <= 1.0 for share in shares):
             raise TestbedError(
                 f"metric scale wheel_shares: {shares}; must be a number from 0 to 1 for each sigma"
@@ -45,14 +52,14 @@ def lidar_scale_error(
 
     Args:
         disagreement: How much longer a way is by matched scans than by the odometry, relative.
-        uncertainty: Variance of the disagreement.
+        uncertainty: Variance of the disagreement, as the calibration gives it.
         lidar_sigma: Standard deviation of the lidar's own relative error; 0 trusts it.
         config: What is known of the wheels.
     """
-    lidar = lidar_sigma**2
+    lidar, matched = lidar_sigma**2, uncertainty / config.surer**2
     mean, evidence = 0.0, 0.0
     for share, wheels in zip(config.wheel_shares, config.wheel_sigmas, strict=True):
-        variance = lidar + wheels**2 + uncertainty
+        variance = lidar + wheels**2 + matched
         likelihood = share * math.exp(-0.5 * disagreement**2 / variance) / math.sqrt(variance)
         mean += likelihood * disagreement * lidar / variance
         evidence += likelihood

@@ -43,7 +43,13 @@ def test_a_lidar_without_error_is_believed() -> None:
 
 
 def test_what_is_not_known_yet_changes_nothing() -> None:
-    assert abs(lidar_scale_error(0.01, 1.0, LIDAR_SIGMA, MetricScaleConfig())) < 1e-6
+    assert abs(lidar_scale_error(0.01, 10.0, LIDAR_SIGMA, MetricScaleConfig())) < 1e-6
+
+
+def test_an_uncertainty_counts_as_much_as_the_settings_say() -> None:
+    config = MetricScaleConfig(wheel_sigmas=(LIDAR_SIGMA,), wheel_shares=(1.0,), surer=2.0)
+    error = lidar_scale_error(0.004, 4.0 * LIDAR_SIGMA**2, LIDAR_SIGMA, config)
+    assert error == pytest.approx(0.004 / 3.0)  # three equal variances
 
 
 def test_over_many_robots_the_error_left_is_smaller_than_the_lidars() -> None:
@@ -64,10 +70,11 @@ def test_over_many_robots_the_error_left_is_smaller_than_the_lidars() -> None:
         {"wheel_sigmas": (0.0, 0.1, 0.1)},
         {"wheel_sigmas": (0.01,)},
         {"wheel_shares": (0.5, 0.5, float("nan"))},
+        {"surer": 0.0},
     ],
 )
 def test_figures_that_are_no_errors_are_refused(wrong: dict[str, tuple[float, ...]]) -> None:
-    with pytest.raises(TestbedError, match="wheel_s"):
+    with pytest.raises(TestbedError, match="metric scale"):
         MetricScaleConfig(**wrong)
 
 
