@@ -14,7 +14,7 @@ SMALLEST = np.diag(np.square([5e-4, 5e-4, 2e-4]))
 
 SMALLEST_WITH_GYRO = np.diag(np.square([5e-4, 5e-4, 1e-4]))
 """Nor one whose turn comes from a gyroscope: as a random walk of 5 scans a second this is as much
-after 100 s as a bias of 2e-5 rad/s, which a second's rest leaves unknown."""
+after 100 s as a bias of 2e-5 rad/s, which a second or two of rest leave unknown."""
 
 LARGEST_SURPRISE = 9.0
 """A surprise beyond three standard deviations counts as one of three."""
