@@ -116,8 +116,8 @@ class SurfaceRefinement:
     def write(self) -> None:
         """Move the map's surfaces.
 
-        What log odds call occupied, but no surface is found near, stays: it came late, when most
-        scans had seen the place without it.
+        What log odds call occupied, but no surface is found near, stays if most scans saw through
+        its place: it came late. If they saw it lie behind something, noise carried hits there.
         """
         grid, config = self._grid, self._config
         rows, columns = self._band.cells.T
@@ -129,7 +129,8 @@ class SurfaceRefinement:
         wall[rows[is_wall], columns[is_wall]] = True
         explained = ndimage.maximum_filter(wall, size=2 * BAND + 1, mode="constant")
         values = grid.log_odds[rows, columns]
-        came_late = (values > grid.config.occupied_above) & ~explained[rows, columns]
+        unexplained = (values > grid.config.occupied_above) & ~explained[rows, columns]
+        came_late = unexplained & (means > -WALL)
         values[told & ~came_late & (means <= -WALL)] = 0.0
         values[told & ~came_late & (means > 0.0)] = config.lowest
         values[is_wall] = config.highest

@@ -130,6 +130,21 @@ def test_what_came_late_stays() -> None:
     assert np.mean(front) > 0.85
 
 
+def test_what_was_drawn_behind_a_wall_before_poses_were_right_goes() -> None:
+    poses = np.tile((-0.5, 0.0, 0.0), (20, 1))
+    scans = scans_in(ROOM, poses)
+    drawn_at = poses.copy()
+    drawn_at[:10, 0] += 0.05
+    grid = mapped(scans, drawn_at)
+
+    def behind(drawn: OccupancyGrid) -> int:
+        cells = drawn.cell_to_world(np.argwhere(drawn.states() == OCCUPIED))
+        return int(np.count_nonzero((cells[:, 0] > 1.64) & (cells[:, 0] < 1.70)))
+
+    assert behind(grid) > 40
+    assert behind(refined(grid, scans, poses)) < behind(grid) / 5
+
+
 def test_a_clockwise_scan_tells_the_same() -> None:
     scans = scans_in(ROOM, TOUR)
     turned = [
