@@ -109,6 +109,15 @@ class InertialUnit:
         return rows
 
 
+FIRST_ROW = np.array((0.0, 0.0, 0.0, 0.0, 1.0, *(0.0,) * 6))
+"""What stands for a message before the first: level, at yaw 0, still."""
+
+
+def yaw_after(row: NDArray[np.float64], time: float) -> float:
+    """The heading [rad] a time [s] after a message ``(11,)``, turning on as it says."""
+    return yaw_of(row) + float(row[IMU_COLUMNS.index("wz")]) * time
+
+
 def yaw_of(row: NDArray[np.float64]) -> float:
     """The heading [rad] that a message ``(11,)`` gives."""
     x, y, z, w = row[1:5].tolist()

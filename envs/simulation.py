@@ -1,6 +1,7 @@
 """Turns velocity commands into the messages of a Burger that drives through a floor plan."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -17,7 +18,7 @@ from envs.camera import SceneCamera
 from envs.contact_counter import ContactCounter
 from envs.drive import wheel_speeds
 from envs.floor_plan import FloorPlan
-from envs.imu import IMU_PRESETS, ImuConfig, InertialUnit, yaw_of
+from envs.imu import FIRST_ROW, IMU_PRESETS, ImuConfig, InertialUnit, yaw_after
 from envs.lidar import BLOCK_STEPS, Lidar
 from envs.lidar_noise import LIDAR_PRESETS, LidarConfig
 from envs.presets import preset
@@ -101,6 +102,11 @@ class Simulation:
         self._rng = np.random.default_rng(rng)
         self.reset()
 
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """Become a copy: its views look at its own data."""
+        self.__dict__.update(state)
+        self._qpos, self._qvel = self.data.qpos, self.data.qvel
+
     @property
     def time(self) -> float:
         """Time since the reset [s]."""
@@ -157,7 +163,7 @@ class Simulation:
         self._lidar.reset(lidar_rng)
         self._encoders.reset(encoders_rng, _wheel_angles(self._qpos), self.pose_world)
         self._imu.reset(imu_rng)
-        self._imu_yaw = 0.0
+        self._newest_imu = FIRST_ROW
 
     def carry_off(self, pose: tuple[float, float, float]) -> None:
         """Put the robot down at rest at another pose in the world: the kidnapped robot.
@@ -272,9 +278,10 @@ class Simulation:
         odometry = np.empty((len(self._wheels), len(ODOMETRY_COLUMNS)))
         for i, (step, qpos, qvel) in enumerate(self._wheels):
             newest = step // IMU_STEPS - first
-            yaw = yaw_of(imu[newest]) if newest >= 0 else self._imu_yaw
+            told = imu[newest] if newest >= 0 else self._newest_imu
+            yaw = yaw_after(told, (step % IMU_STEPS) * TIMESTEP)
             odometry[i] = self._read_odometry(step * TIMESTEP, qpos, qvel, yaw)
-        self._imu_yaw = yaw_of(imu[-1]) if len(imu) else self._imu_yaw
+        self._newest_imu = imu[-1] if len(imu) else self._newest_imu
         stamp, ranges = self._scan or (None, None)
         return SensorBatch(odometry=odometry, imu=imu, scan_stamp=stamp, ranges=ranges)
 

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from envs.floor_plan import FloorPlan
 from envs.truth import truth_of_plan
 from envs.worlds import load_world
+from evaluation.held_interrupt import held_interrupt
 from evaluation.progress import Progress, progress_of
 from evaluation.recorder import Recorder
 from evaluation.track import Track
@@ -231,25 +232,27 @@ def drive_episode(
     stop_reason, next_report, telling = RUNNING, 0.0, 0.0
     started = perf_counter()
     try:
-        while stop_reason == RUNNING:
-            action = agent.act(observation)
-            if recorder is not None:
-                recorder.note(observation, action, agent.mapper.pose_map, agent.mapper.grid)
-            _note(track, observation, info, agent)
-            time = float(observation["time"][0])
-            stop_reason = agent.navigator.status
-            if time >= next_report or stop_reason != RUNNING:
-                next_report = time + 1.0
-                coverages.append((time, meter.measure(agent.mapper.grid, _changed(agent))))
-                if on_progress is not None:
-                    told = perf_counter()
-                    on_progress(progress_of(coverages[-1], agent, observation, info))
-                    telling += perf_counter() - told
-            if stop_reason != RUNNING:
-                break
-            observation, _, _, truncated, info = environment.step(action)
-            if truncated:
-                stop_reason = TIME_LIMIT
+        with held_interrupt() as check_interrupt:
+            while stop_reason == RUNNING:
+                check_interrupt()
+                action = agent.act(observation)
+                if recorder is not None:
+                    recorder.note(observation, action, agent.mapper.pose_map, agent.mapper.grid)
+                _note(track, observation, info, agent)
+                time = float(observation["time"][0])
+                stop_reason = agent.navigator.status
+                if time >= next_report or stop_reason != RUNNING:
+                    next_report = time + 1.0
+                    coverages.append((time, meter.measure(agent.mapper.grid, _changed(agent))))
+                    if on_progress is not None:
+                        told = perf_counter()
+                        on_progress(progress_of(coverages[-1], agent, observation, info))
+                        telling += perf_counter() - told
+                if stop_reason != RUNNING:
+                    break
+                observation, _, _, truncated, info = environment.step(action)
+                if truncated:
+                    stop_reason = TIME_LIMIT
     except KeyboardInterrupt:
         if len(track) == 0:
             raise  # there is nothing to keep yet

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from evaluation.held_interrupt import held_interrupt
 from evaluation.log_feed import LogFeed
 from evaluation.recording import Recording
 from mapping.errors import TestbedError
@@ -127,10 +128,12 @@ def run_replay(
     feed = LogFeed(mapper, max_range=config.max_range, period=config.period)
     stop_reason = COMPLETE
     try:
-        for period in replace(log, odometry=odometry).periods():
-            feed.give(period)
-            if on_progress is not None:
-                on_progress(feed.scans)
+        with held_interrupt() as check_interrupt:
+            for period in replace(log, odometry=odometry).periods():
+                check_interrupt()
+                feed.give(period)
+                if on_progress is not None:
+                    on_progress(feed.scans)
     except KeyboardInterrupt:
         if mapper.updates == 0 or feed.scans == 0:
             raise  # there is nothing to keep yet

@@ -12,7 +12,7 @@ from envs.floor_plan import FloorPlan
 from envs.plan_picture import draw_plan
 from envs.plan_yaml import write_plan
 from envs.random_world import MAX_AREA, MAX_ROOMS, MIN_AREA, MIN_ROOMS, STYLES
-from envs.worlds import built_in_worlds, load_world
+from envs.worlds import built_in_worlds, load_world, world_label
 from mapping.io.atomic import write_atomically
 from scripts.arguments import parse, run_action
 
@@ -63,7 +63,7 @@ def _list(arguments: list[str]) -> int:
 def _show(arguments: list[str]) -> int:
     options = parse(Show, "world show", arguments)
     plan = load_world(options.world)
-    out = options.out or Path(f"{plan.name}.png")
+    out = options.out or Path(f"{world_label(options.world)}.png")
     _save_picture(plan, out)
     print(f"{plan.name}: {len(plan.solids())} solids, start {plan.start}; drawn in {out}")
     return 0

@@ -11,6 +11,7 @@ from envs.burger_env import BurgerEnv
 from envs.floor_plan import FloorPlan
 from envs.worlds import load_world
 from evaluation.episode import CONTROL_PERIOD, ENVIRONMENT
+from evaluation.held_interrupt import held_interrupt
 from evaluation.localization.config import LocalizationConfig
 from evaluation.localization.places import Places
 from evaluation.localization.recording import LocalizationRecording, LocalizationRun
@@ -100,21 +101,27 @@ def _drive(
     navigator, nothing = Reactive(), OccupancyGrid(GridConfig(rows=1, columns=1))
     scan: LaserScan | None = None
     time = float(observation["time"][0])
-    while True:
-        if scan is None or observation["scan_stamp"][0] != scan.stamp:
-            scan = LaserScan.from_observation(observation)
-        recording.take(time, scan, observation, info["pose_world"])
-        if on_progress is not None:
-            on_progress(time)
-        if time >= config.end - 0.5 * CONTROL_PERIOD:
-            return
-        if config.kidnap is not None and recording.kidnapped_at is None and time >= config.kidnap:
-            recording.kidnapped_at = time
-            _burger(environment).carry_off(elsewhere)
-        twist = navigator.command(nothing, np.zeros(3), scan)
-        action = np.array([twist.linear_x, twist.angular_z], dtype=np.float32)
-        observation, _, _, _, info = environment.step(action)
-        time = float(observation["time"][0])
+    with held_interrupt() as check_interrupt:
+        while True:
+            check_interrupt()
+            if scan is None or observation["scan_stamp"][0] != scan.stamp:
+                scan = LaserScan.from_observation(observation)
+            recording.take(time, scan, observation, info["pose_world"])
+            if on_progress is not None:
+                on_progress(time)
+            if time >= config.end - 0.5 * CONTROL_PERIOD:
+                return
+            if (
+                config.kidnap is not None
+                and recording.kidnapped_at is None
+                and time >= config.kidnap
+            ):
+                recording.kidnapped_at = time
+                _burger(environment).carry_off(elsewhere)
+            twist = navigator.command(nothing, np.zeros(3), scan)
+            action = np.array([twist.linear_x, twist.angular_z], dtype=np.float32)
+            observation, _, _, _, info = environment.step(action)
+            time = float(observation["time"][0])
 
 
 def _burger(environment: gymnasium.Env[Any, Any]) -> BurgerEnv:

@@ -32,6 +32,7 @@ from mapping.io.carmen import (
     SICK_TYPES,
     TIME_INCREMENT_PARAM,
 )
+from mapping.io.carmen_clock import Stamps, clock_of
 from mapping.io.laser_codes import smallest_code
 from mapping.io.range_limits import without_codes
 from mapping.messages import Imu, LaserScan, Odometry, Twist
@@ -43,9 +44,6 @@ IMU_WORDS = 17
 
 POSE_DECIMALS = 6
 """Decimals of poses in CARMEN logs (CARMEN, writelog.c): differences of two are good to as many."""
-
-Stamps = tuple[float, float]
-"""When the sensor measured and when the logger wrote [s]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -75,7 +73,8 @@ def read_carmen(path: str | Path) -> SensorLog:
     poses in the scans' own lines, with velocities from their differences. The lidar's pose comes
     from ``PARAM robot_frontlaser_offset`` and its kin, else from the first scan's two poses.
 
-    Stamps are those of the sensors (``ipc_timestamp``), or the logger's where a log has no others.
+    Stamps are those of the sensors (``ipc_timestamp``), or the logger's where a log has no others
+    or the sensors' clock stood still or was set back.
 
     Raises:
         TestbedError: The file cannot be read, holds no scan and no odometry, or has a broken line
@@ -123,10 +122,8 @@ class _Lines:
 
     def sensor_log(self, source: str) -> SensorLog:
         """The messages of all lines."""
-        stamps = [line.stamps for line in self.lasers]
-        stamps += [stamps for stamps, _ in (*self.odometry, *self.imu)]
         lasers = _with_codes_known(self.lasers)
-        clock = 0 if any(sensor > 0.0 for sensor, _ in stamps) else 1
+        clock = clock_of([line.stamps for line in lasers] or [each for each, _ in self.odometry])
         if len(self.odometry) < len(self.lasers):
             odometry = _odometry_of_lasers(lasers, clock)
         else:
@@ -199,7 +196,7 @@ class _Lines:
 def _numbered_lines(path: Path) -> Iterator[tuple[int, str]]:
     """The lines that are neither blank nor comments, with their numbers from 1."""
     try:
-        with path.open(encoding="utf-8", errors="replace") as file:
+        with path.open(encoding="utf-8-sig", errors="replace") as file:
             for number, line in enumerate(file, start=1):
                 if line.strip() and not line.lstrip().startswith("#"):
                     yield number, line

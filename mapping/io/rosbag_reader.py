@@ -1,6 +1,7 @@
 """Turns ROS 2 bags into sensor logs: folders with SQLite or MCAP files, and bare such files."""
 
 import logging
+import math
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -24,6 +25,7 @@ from mapping.io.ros_library import (
     message_types,
     require_rosbags,
 )
+from mapping.io.ros_mounting import turned_over, upright
 from mapping.messages import Imu, LaserScan, Odometry, Twist
 from mapping.odometry_from_poses import odometry_from_poses
 from mapping.sensor_log import SensorLog
@@ -36,6 +38,9 @@ ODOM_FRAME = "odom"
 
 STORAGES = (".mcap", ".db3")
 """Endings of the files that hold a bag's messages."""
+
+NOT_MEASURED = -1.0
+"""What the first element of a covariance is when a message does not tell the quantity."""
 
 LOGGER = logging.getLogger(__name__)
 
@@ -56,7 +61,9 @@ def read_rosbag(
 
     Ranges mean what they mean in the message: ``+inf`` nothing there, 0.0 and NaN a failed beam.
     One at or beyond a ``range_max`` above 0 becomes ``+inf``, as drivers from before REP-117 meant
-    it. A lidar mounted upside down gets angles that run backwards.
+    it. A lidar mounted upside down gets angles that run backwards. What an IMU measured is turned
+    into the robot's frame by the transforms, if they tell how it is mounted; one that says by its
+    covariance that it has no gyroscope is left out.
 
     Args:
         path: A bag's folder, or one .mcap or .db3 file.
@@ -66,7 +73,7 @@ def read_rosbag(
 
     Raises:
         TestbedError: The rosbags library is missing, the bag cannot be read, it holds no scan, or
-            several topics might be meant.
+            several topics might be meant, or a scan does not say where its beams look.
     """
     require_rosbags()
     from rosbags.rosbag2 import Reader
@@ -117,7 +124,8 @@ class _Bag:
             raise TestbedError(f"{self.path}: no {LASER_SCAN}; must hold one (topics: {topics})")
         scans, scan_frames = self.read(scan_source, _scan)
         odometry, bases = self.read(odometry_source, _odometry)
-        imu, _ = self.read(self.topic(IMU, imu_topic), _imu)
+        self._check_angles(scans)
+        imu, imu_frames = self.read(self.topic(IMU, imu_topic), _imu)
         tree = FrameTree()
         for link in self.transforms(static=True):
             _add(tree, link)
@@ -132,13 +140,25 @@ class _Bag:
         if lidar is None:
             LOGGER.warning("%s: no transform from robot to lidar; taken as zero", self.path)
             lidar = np.eye(4)
+        mount = tree.find(imu_frames[0], (*bases[:1], *BASE_FRAMES)) if imu_frames else None
+        told = [message for message in imu if message is not None]
         return SensorLog(
             source=str(self.path),
-            scans=[_turned_over(scan) for scan in scans] if lidar[2, 2] < 0.0 else scans,
+            scans=[turned_over(scan) for scan in scans] if lidar[2, 2] < 0.0 else scans,
             odometry=odometry,
-            imu=imu,
+            imu=told if mount is None else [upright(message, mount) for message in told],
             lidar_pose_base=(float(lidar[0, 3]), float(lidar[1, 3]), yaw_of(lidar)),
         )
+
+    def _check_angles(self, scans: Sequence[LaserScan]) -> None:
+        """Refuse scans that do not say where their beams look."""
+        for scan in scans:
+            step = scan.angle_increment
+            if len(scan.ranges) > 1 and not (math.isfinite(step * scan.angle_min) and step != 0.0):
+                raise TestbedError(
+                    f"{self.path}: scan at {scan.stamp:.3f} s: angle_min {scan.angle_min:g}, "
+                    f"angle_increment {step:g}; must be finite, and the increment not 0"
+                )
 
     def topic(self, message_type: str, name: str) -> list[Any]:
         """The connections of the one topic of a type that is meant; none when there is none."""
@@ -203,20 +223,6 @@ def _scan(message: Any) -> LaserScan:
     )
 
 
-def _turned_over(scan: LaserScan) -> LaserScan:
-    """A scan of a lidar whose z axis points down, as seen from above."""
-    return LaserScan(
-        stamp=scan.stamp,
-        ranges=scan.ranges,
-        angle_min=-scan.angle_min,
-        angle_increment=-scan.angle_increment,
-        time_increment=scan.time_increment,
-        scan_time=scan.scan_time,
-        range_min=scan.range_min,
-        range_max=scan.range_max,
-    )
-
-
 def _odometry(message: Any) -> Odometry:
     velocity = message.twist.twist
     return Odometry(
@@ -226,7 +232,10 @@ def _odometry(message: Any) -> Odometry:
     )
 
 
-def _imu(message: Any) -> Imu:
+def _imu(message: Any) -> Imu | None:
+    """An IMU's message, None if it says that there is no gyroscope (sensor_msgs/Imu: -1)."""
+    if message.angular_velocity_covariance[0] == NOT_MEASURED:
+        return None
     return Imu(
         stamp=_seconds(message.header.stamp),
         orientation=np.array(_xyzw(message.orientation)),

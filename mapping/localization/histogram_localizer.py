@@ -93,6 +93,8 @@ class HistogramLocalizer(HypothesisLocalizer):
         self._usual = self._field.best
         self._pending = np.zeros(3)
         self._looked_at = int(self._possible.sum())
+        # on the largest maps an even belief has less in each cell
+        self._least = min(self.config.least, 0.1 / max(self._looked_at, 1))
 
     @property
     def size(self) -> int:
@@ -102,7 +104,7 @@ class HistogramLocalizer(HypothesisLocalizer):
     @property
     def sample(self) -> Pose:
         """Middles of the cells that are looked at ``(n, 3)``."""
-        return np.asarray(self._poses[self._belief > self.config.least])
+        return np.asarray(self._poses[self._belief > self._least])
 
     def _believe(self, reading: Reading) -> None:
         if not reading.is_first:
@@ -123,17 +125,17 @@ class HistogramLocalizer(HypothesisLocalizer):
         x, y, turn = self._pending.tolist()
         self._pending = np.zeros(3)
         config = self.config
-        moved = shift_belief(self._belief, (x, y, turn), config.resolution, config.least)
+        moved = shift_belief(self._belief, (x, y, turn), config.resolution, self._least)
         moved *= self._possible
         anywhere = self._possible / self._possible.sum()
         total = float(moved.sum())
         share = config.carried_off if total > 0.0 else 1.0
-        self._belief = (1.0 - share) * moved / max(total, config.least) + share * anywhere
+        self._belief = (1.0 - share) * moved / max(total, self._least) + share * anywhere
 
     def _correct(self, points: NDArray[np.float64]) -> None:
         """Weigh the cells by a scan (line 4); all of them if those that matter explain it badly."""
         config = self.config
-        active = self._belief > config.least
+        active = self._belief > self._least
         logs = self._field.log_likelihoods(self._poses[active], points)
         evidence = self._evidence(active, logs, len(points))
         if evidence < config.doubt * self._usual and active.sum() < self._possible.sum():
@@ -157,7 +159,7 @@ class HistogramLocalizer(HypothesisLocalizer):
 
     def _locate(self) -> None:
         """Gather the cells that matter into hypotheses."""
-        active = self._belief > self.config.least
+        active = self._belief > self._least
         self._hypotheses = cluster(self._poses[active], self._belief[active])
 
     def _likeliest_pose(self) -> Pose:

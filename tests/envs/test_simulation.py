@@ -1,6 +1,8 @@
 """A simulation hands out every message once, at its time, and counts what the robot hits."""
 
+import copy
 import math
+import pickle
 
 import numpy as np
 import pytest
@@ -11,6 +13,7 @@ from envs.floor_plan import Box, FloorPlan, Wall
 from envs.schedule import is_odometry_step, next_event
 from envs.simulation import SensorBatch, Simulation
 from mapping.errors import TestbedError
+from mapping.geometry import wrap_to_pi
 
 ROOM = FloorPlan(
     name="room",
@@ -143,3 +146,26 @@ def test_an_unknown_preset_is_refused_with_the_known_ones(sensor: str) -> None:
 def test_time_must_pass_by_a_step_at_least(dt: float) -> None:
     with pytest.raises(TestbedError, match="dt: "):
         Simulation(ROOM).advance(dt)
+
+
+def test_a_copy_drives_on_as_the_original_does() -> None:
+    simulation = Simulation(ROOM, rng=3)
+    simulation.command(0.1, 0.5)
+    simulation.advance()
+    twins = [simulation, copy.deepcopy(simulation), pickle.loads(pickle.dumps(simulation))]
+    for twin in twins:
+        twin.command(0.2, 0.5)
+        twin.advance()
+    assert all(np.array_equal(twin.pose_world, simulation.pose_world) for twin in twins)
+    assert simulation.velocity_base[1] > 0.3
+
+
+def test_odometry_from_the_imu_tells_the_turn_rate_and_the_heading_of_its_own_time() -> None:
+    """Its messages do not come at the IMU's times."""
+    simulation = Simulation(ROOM, **EXACT, rng=0)
+    start = simulation.pose_world
+    for _ in range(30):
+        simulation.command(0.0, 1.0)
+        rows = simulation.advance().odometry
+    assert rows[:, 5] == pytest.approx(np.ones(3), abs=0.01)
+    assert rows[-1, 3] == pytest.approx(wrap_to_pi(simulation.pose_world[2] - start[2]), abs=0.002)

@@ -217,3 +217,16 @@ def test_poses_and_ranges_that_are_no_numbers_do_no_harm(tmp_path: Path) -> None
     assert log.lidar_pose_base == (0.0, 0.0, 0.0)
     assert np.isnan(log.scans[0].ranges[0])
     assert len(log.odometry) == 2
+
+
+@pytest.mark.parametrize("sensor", [(5.0, 5.0, 5.0), (1005.0, 6.0, 7.0)], ids=["stood", "set back"])
+def test_a_sensors_clock_that_loses_scans_yields_to_the_loggers(
+    tmp_path: Path, sensor: tuple[float, ...]
+) -> None:
+    lines = [flaser([1.0], stamp=t, logger=0.2 * k) for k, t in enumerate(sensor)]
+    assert [scan.stamp for scan in read(tmp_path, *lines).scans] == [0.0, 0.2, 0.4]
+
+
+def test_a_byte_order_mark_takes_no_line_away(tmp_path: Path) -> None:
+    (tmp_path / "a.log").write_text("\ufeff" + flaser([1.0]) + "\n", encoding="utf-8")
+    assert len(read_carmen(tmp_path / "a.log").scans) == 1

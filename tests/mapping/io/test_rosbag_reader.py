@@ -16,7 +16,7 @@ from mapping.io.ros_library import message_types
 from mapping.io.ros_messages import RosMessages
 from mapping.io.rosbag_reader import read_rosbag
 from mapping.io.rosbag_writer import write_rosbag
-from mapping.messages import LaserScan, Odometry
+from mapping.messages import Imu, LaserScan, Odometry
 from mapping.sensor_log import SensorLog
 from tests.mapping.io.logs import driven_log, logs, meanings
 
@@ -151,6 +151,44 @@ def test_a_lidar_upside_down_turns_the_other_way(tmp_path: Path) -> None:
     log = bag(tmp_path, ("/scan", scan()), ("/tf_static", rolled))
     assert log.scans[0].angles == pytest.approx([0.0, -np.pi / 180])
     assert log.lidar_pose_base == pytest.approx((0.1, 0.0, 0.0))
+
+
+def imu(rate: float, down: float) -> Any:
+    message = MAKE.imu(
+        5_500_000_000,
+        Imu(
+            stamp=0.0,
+            orientation=np.array([0.0, 0.0, 0.0, 1.0]),
+            angular_velocity=np.array([0.0, 0.1, rate]),
+            linear_acceleration=np.array([0.0, 0.0, down]),
+        ),
+    )
+    message.header.frame_id = "imu_link"
+    return message
+
+
+def test_an_imu_upside_down_is_turned_into_the_robots_frame(tmp_path: Path) -> None:
+    rolled = link("base_link", "imu_link", 0.1)
+    rolled.transforms[0].transform.rotation = MAKE.store.types["geometry_msgs/msg/Quaternion"](
+        1.0, 0.0, 0.0, 0.0
+    )
+    log = bag(tmp_path, ("/scan", scan()), ("/tf_static", rolled), ("/imu", imu(-0.5, -9.8)))
+    assert log.imu[0].angular_velocity == pytest.approx([0.0, -0.1, 0.5])
+    assert log.imu[0].linear_acceleration == pytest.approx([0.0, 0.0, 9.8])
+
+
+def test_an_imu_without_a_gyroscope_is_none(tmp_path: Path) -> None:
+    silent = imu(0.0, 9.8)
+    silent.angular_velocity_covariance = np.array([-1.0] + [0.0] * 8)
+    assert not bag(tmp_path, ("/scan", scan()), ("/imu", silent)).imu
+
+
+@pytest.mark.parametrize("step", [0.0, np.nan])
+def test_beams_that_look_nowhere_are_refused(tmp_path: Path, step: float) -> None:
+    blind = scan()
+    blind.angle_increment = step
+    with pytest.raises(TestbedError, match=r"angle_increment .*must be finite"):
+        bag(tmp_path, ("/scan", blind))
 
 
 def test_without_transforms_the_lidar_is_taken_to_be_the_robot_and_a_warning_says_so(
