@@ -98,7 +98,8 @@ class ExploreEnv(gym.Env[Observation, Action]):  # type: ignore[misc]  # mypy sk
         super().reset(seed=seed)
         robot_seed = int(self.np_random.integers(2**31))
         observation, info = self._robot.reset(seed=robot_seed, options=options)
-        truth = truth_of_plan(self._robot.plan, resolution=MAP_RESOLUTION)
+        start = (options or {}).get("start")
+        truth = truth_of_plan(self._robot.plan, resolution=MAP_RESOLUTION, start=start)
         self._floor = float(np.count_nonzero(truth.visible_free)) * MAP_RESOLUTION**2
         if self._floor == 0.0:
             raise TestbedError(f"world {self._robot.plan.name}: no floor to see; must have some")

@@ -86,7 +86,7 @@ class NavigateEnv(gym.Env[Observation, Action]):  # type: ignore[misc]  # mypy s
         goal = options.pop("goal", None)
         robot_seed = int(self.np_random.integers(2**31))
         observation, info = self._robot.reset(seed=robot_seed, options=options)
-        self._start = info["pose_world"]
+        self._start, self._begin = info["pose_world"], options.get("start")
         self._goal = self._checked_goal(goal) if goal is not None else self._draw_goal()
         self._distance = float(np.hypot(*(self._goal - self._start[:2])))
         return self._seen(observation), self._told(info, 0.0, 0.0, 0.0)
@@ -139,7 +139,7 @@ class NavigateEnv(gym.Env[Observation, Action]):  # type: ignore[misc]  # mypy s
 
     def _reachable(self) -> NDArray[np.float64]:
         """Centres ``(n, 2)`` of the cells that the robot's centre can reach [m]."""
-        truth = truth_of_plan(self._robot.plan, resolution=RESOLUTION)
+        truth = truth_of_plan(self._robot.plan, resolution=RESOLUTION, start=self._begin)
         cells = np.argwhere(truth.reachable)[:, ::-1]
         places: NDArray[np.float64] = np.array(truth.origin) + (cells + 0.5) * truth.resolution
         return places

@@ -1,5 +1,7 @@
 """Turn a floor plan into the truth that maps of it are scored against."""
 
+from numpy.typing import ArrayLike
+
 from envs.floor_plan import FloorPlan
 from envs.plan_raster import lattice_for, rasterize
 from mapping.burger import LIDAR_RANGE_MAX, ROBOT_RADIUS
@@ -17,6 +19,7 @@ def truth_of_plan(
     robot_radius: float = ROBOT_RADIUS,
     sensor_range: float = LIDAR_RANGE_MAX,
     margin: float = TRUTH_MARGIN,
+    start: ArrayLike | None = None,
 ) -> TruthMap:
     """What of a plan the robot can reach from its start, and its lidar see from there.
 
@@ -26,6 +29,7 @@ def truth_of_plan(
         robot_radius: Radius of the robot [m].
         sensor_range: How far the lidar sees [m].
         margin: Width of the frame round the plan's bounds [m].
+        start: Where the robot begins, x, y [m] and more; None for the plan's start.
 
     Raises:
         TestbedError: The resolution is no positive number, the raster would be too large, or on
@@ -36,7 +40,7 @@ def truth_of_plan(
         rasterize(plan, resolution=resolution, origin=origin, shape=shape),
         resolution=resolution,
         origin=origin,
-        start=plan.start,
+        start=plan.start if start is None else start,
         robot_radius=robot_radius,
         sensor_range=sensor_range,
     )

@@ -18,7 +18,7 @@ from mapping.geometry import Pose, compose
 from mapping.grid import OccupancyGrid
 from mapping.log_editing import reach_of, rebased
 from mapping.mapper import Mapper
-from mapping.mappers import CONFIGS, check_resolution, make_mapper
+from mapping.mappers import CONFIGS, MAPPERS, NoSettings, check_resolution, make_mapper
 from mapping.odometry_trajectory import odometry_at_scans, odometry_trajectory
 from mapping.pose_graph import PoseGraph
 from mapping.pose_history import PoseHistory
@@ -185,10 +185,10 @@ def _decided(config: ReplayConfig, recording: Recording) -> ReplayConfig:
 
 def _mapper(config: ReplayConfig, recording: Recording) -> Mapper:
     """The mapper, told about the lidar as far as it has settings for that."""
-    if config.mapper not in CONFIGS:
-        raise TestbedError(f"mapper: {config.mapper!r}; must be one of {', '.join(CONFIGS)}")
+    if config.mapper not in MAPPERS:
+        raise TestbedError(f"mapper: {config.mapper!r}; must be one of {', '.join(MAPPERS)}")
     assert config.lidar is not None
-    kind = CONFIGS[config.mapper]
+    kind = CONFIGS.get(config.mapper, NoSettings)
     told = {
         "max_range": config.max_range,
         "range_noise": RANGE_NOISES[config.lidar],

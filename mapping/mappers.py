@@ -1,7 +1,7 @@
 """Makes a mapper by its name."""
 
 from collections.abc import Mapping
-from dataclasses import fields, replace
+from dataclasses import dataclass, fields, replace
 from typing import Any, TypeVar
 
 from numpy.typing import ArrayLike
@@ -128,6 +128,12 @@ MAPPERS = {
 }
 """The mappers by name."""
 
+
+@dataclass(frozen=True, slots=True)
+class NoSettings:
+    """What a mapper can be set to that is in MAPPERS alone."""
+
+
 CONFIGS: dict[str, type] = {
     "graph": GraphConfig,
     "gmapping": GmappingConfig,
@@ -135,4 +141,5 @@ CONFIGS: dict[str, type] = {
     "ogm": OgmConfig,
     "occgridmapp": OccGridMappConfig,
 }
-"""The class of each mapper's settings."""
+"""The class of each mapper's settings, for those that have any. A replay sets its ``max_range``,
+``range_noise``, ``lidar_pose_base`` and ``seed``, if there are such, and what ``--set`` says."""

@@ -109,3 +109,16 @@ def test_the_observed_map_turns_with_the_robot() -> None:
         observation, *_ = env.step(np.array((0.0, np.pi / 1.6), dtype=np.float32))
     turned = observation["map"][middle - 22 : middle - 16, middle - 1 : middle + 2]
     assert (turned == 255).any(), "half a turn brings the near wall ahead"
+
+
+def test_a_start_in_another_room_has_its_goals_and_its_floor_there() -> None:
+    def square(x: float) -> Wall:
+        return Wall(points=((x, 0.0), (x + 3.0, 0.0), (x + 3.0, 3.0), (x, 3.0)), closed=True)
+
+    rooms = FloorPlan(name="rooms", start=(1.0, 1.0, 0.0), walls=(square(0.0), square(5.0)))
+    there = {"start": (6.5, 1.5, 0.0)}
+    _, info = NavigateEnv(rooms).reset(seed=0, options=there)
+    assert info["goal_world"][0] > 5.0
+    explore = ExploreEnv(rooms)
+    explore.reset(seed=0, options=there)
+    assert run_out(explore, LEFT, 20)[1]["coverage"] > 0.5

@@ -14,6 +14,8 @@ from evaluation.replay_folder import write_replay
 from mapping.errors import TestbedError
 from mapping.geometry import between
 from mapping.grid import UNKNOWN
+from mapping.mappers import MAPPERS
+from mapping.occ_grid_mapp import OccGridMapp
 from tests.evaluation.arena_log import COARSE, LOG, RECORDING, RUN, START, log_in_frame
 from tests.mapping.arena import circling
 
@@ -140,3 +142,10 @@ def test_an_unknown_name_is_refused_with_the_known_ones(
 def test_settings_reach_the_mapper() -> None:
     config = replace(COARSE, set=("highest=3.5", "lowest=-3.5"))
     assert run_replay(config, RECORDING).grid.log_odds.max() == 3.5
+
+
+def test_a_mapper_of_ones_own_enters_by_its_name_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(MAPPERS, "mine", lambda start, *_: OccGridMapp(start_pose_map=start))
+    assert run_replay(replace(COARSE, mapper="mine", set=()), RECORDING).map_updates > 0
+    with pytest.raises(TestbedError, match="hits"):
+        run_replay(replace(COARSE, mapper="mine", set=("hits=1",)), RECORDING)
