@@ -41,8 +41,9 @@ class ScanMatch:
     """Matches scans with the keyframes around, draws them, and takes new keyframes.
 
     A scan is dropped, and counted in ``scans_dropped``, when its stamp is older than the newest
-    seen or not finite, when there is no odometry for it, or when no beam of it tells anything. A
-    scan that cannot be matched is taken to be where the odometry says.
+    seen or not finite, when there is no odometry for it, when an angle of it is not finite, or when
+    no beam of it tells anything. A scan that cannot be matched is taken to be where the odometry
+    says.
     """
 
     def __init__(
@@ -105,6 +106,8 @@ class ScanMatch:
     def _take(self, scan: LaserScan) -> bool:
         """Match a new scan and draw it; False when it cannot be used."""
         self._newest_scan = scan.stamp
+        if not np.all(np.isfinite(scan.angles)):
+            return False
         beams = read_beams(scan, self.config.max_range)
         stamps = np.append(scan.stamp, scan.beam_stamps[beams.indices])
         poses_odom = self._tracker.poses_at(stamps)

@@ -62,7 +62,7 @@ def surface_of(
         spacing: Distance between points along a wall [m].
     """
     count = len(lengths)
-    surface = np.empty((count * (2 + int(WIDEST_GAP / spacing)), 5), dtype=np.float32)
+    surface = np.empty((count * (3 + int(WIDEST_GAP / spacing)), 5), dtype=np.float32)
     made = 0
     for i in range(count):
         width = min(lengths[i] * increment, spacing)

@@ -112,6 +112,17 @@ def test_a_surface_is_laid_from_reading_to_reading(seed: int, keep: float) -> No
     assert np.allclose(found, slow_surface(*seen, weights, normals), atol=1e-5)
 
 
+@pytest.mark.parametrize("spacing", [0.39, 0.41, 1.0])
+def test_a_surface_of_any_spacing_fits_its_table(spacing: float) -> None:
+    """The plain function, without Numba, refuses to write beyond its end."""
+    angles = np.arange(360) * INCREMENT
+    points = 3.0 * np.column_stack((np.cos(angles), np.sin(angles)))
+    seen = points, np.full(360, 3.0), np.arange(360)
+    normals = normals_of(*seen, INCREMENT)
+    plain = surface_of.py_func(*seen, np.ones(360), normals, INCREMENT, spacing)
+    assert len(plain) >= 360
+
+
 def test_normals_of_a_straight_wall_face_the_robot() -> None:
     wall = np.array([[-4.0, 1.5, 4.0, 1.5]])
     normals = normals_of(*readings(wall), INCREMENT)

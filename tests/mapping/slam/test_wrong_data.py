@@ -144,6 +144,13 @@ def test_scans_without_a_beam_that_tells_anything_draw_nothing(name: str) -> Non
         assert mapper.scans_dropped == len(RELIABLE.periods)
 
 
+@pytest.mark.parametrize("name", ["scan_match", "graph"])
+@pytest.mark.parametrize("wrong", ["no angle", "no increment"])
+def test_scans_that_look_nowhere_are_dropped(name: str, wrong: str) -> None:
+    mapper = fed(made(name), edited(WRONG[wrong]))
+    assert mapper.scans_dropped == len(range(1, len(RELIABLE.periods), 3))
+
+
 @EVERY
 def test_a_gyroscope_of_nan_changes_nothing(name: str) -> None:
     plain, mapper = made(name), made(name)
