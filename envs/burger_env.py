@@ -14,7 +14,8 @@ from envs.floor_plan import MAX_COORDINATE, FloorPlan
 from envs.imu import ACCEL_RANGE, GYRO_RANGE, ImuConfig
 from envs.lidar_noise import LidarConfig
 from envs.presets import preset
-from envs.simulation import SensorBatch, Simulation
+from envs.sensor_batch import SensorBatch
+from envs.simulation import Simulation
 from envs.wheel_encoders import ODOMETRY_PRESETS, OdometryConfig, YawSource
 from envs.worlds import load_world
 from mapping.burger import (
@@ -81,8 +82,10 @@ class BurgerEnv(gym.Env[Observation, Action]):  # type: ignore[misc]  # mypy ski
 
     ## Reward, termination, truncation
 
-    The reward is always 0.0: this environment is the robot, tasks wrap it. It never terminates, not
-    even in a crash; ``TimeLimit`` truncates after ``max_episode_steps`` (30 minutes by default).
+    The reward is always 0.0: this environment is the robot, tasks wrap it. It terminates when the
+    robot has toppled (leans by more than 60 degrees; people's feet can knock it over, and nothing
+    sets it up again), but not in a crash; ``TimeLimit`` truncates after ``max_episode_steps`` (30
+    minutes by default).
 
     ## Info
 
@@ -96,7 +99,9 @@ class BurgerEnv(gym.Env[Observation, Action]):  # type: ignore[misc]  # mypy ski
 
     A contact is a part of the robot beginning to touch something but the floor. It counts in
     ``contacts`` if that stands still, or is a person whom the robot moved towards faster than 0.02
-    m/s at the place where they first touched; else it counts in ``contacts_by_people``.
+    m/s at the place where they first touched; else it counts in ``contacts_by_people``. So does
+    what people push the robot into, until half a second after they let go of it, or after it drives
+    on if it came to rest.
 
     ## Start
 
@@ -190,7 +195,8 @@ class BurgerEnv(gym.Env[Observation, Action]):  # type: ignore[misc]  # mypy ski
         if np.shape(action) != (2,):
             raise TestbedError(f"action: shape {np.shape(action)}; must be (2,)")
         self._simulation.command(float(action[0]), float(action[1]))
-        return self._observe(self._simulation.advance()), 0.0, False, False, self._info()
+        observation = self._observe(self._simulation.advance())
+        return observation, 0.0, self._simulation.has_toppled, False, self._info()
 
     def carry_off(self, pose: tuple[float, float, float]) -> None:
         """Put the robot down elsewhere without its sensors noticing; see ``Simulation``.

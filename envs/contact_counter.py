@@ -16,6 +16,9 @@ OWN_MOTION = 0.02
 """A robot that moves towards a leg faster than this, a tenth of its full speed [m/s], runs into the
 person; a slower one stands."""
 
+AT_REST = 0.005
+"""A robot that moves and turns slower than this has not driven on yet [m/s, rad/s]."""
+
 
 class ContactCounter:
     """Counts contacts since the last reset.
@@ -23,7 +26,9 @@ class ContactCounter:
     Each pair of a robot part and a thing that stands still counts for itself, and counts again when
     it had been apart for half a second: a push against a wall chatters. A person counts once for
     the whole meeting, until both had been apart for half a second: the first touch tells whose
-    doing it is, and what a pushed robot does afterwards is no longer its own motion.
+    doing it is, and what a pushed robot does afterwards is no longer its own motion: what it runs
+    into while people push it, until half a second after they let go of it, or after it drives on if
+    it came to rest, is the doing of those people as well.
 
     Args:
         model: A scene.
@@ -40,6 +45,8 @@ class ContactCounter:
         self.own, self.by_people = 0, 0
         self._touched: dict[tuple[int, int], int] = {}
         self._met: dict[int, int] = {}
+        self._pushes: dict[int, bool] = {}
+        self._pushed = _NEVER
 
     def count(
         self,
@@ -57,16 +64,21 @@ class ContactCounter:
                 first ``(2,)`` or longer [m], in the world.
             base_velocity: Its velocity then: linear in the world, angular in base_link ``(6,)``.
         """
+        if self._is_pushed(step) and np.abs(base_velocity[[0, 1, 5]]).max() < AT_REST:
+            self._pushed = step
+        things = []
         for contact, (first, second) in enumerate(data.contact.geom.tolist()):
             if self._floor in (first, second):
                 continue
             leg = second if second in self._person else first
             if leg in self._person:
                 self._meet(data, contact, leg, step, base_position, base_velocity)
-                continue
-            last = self._touched.get((first, second), -APART_STEPS - 1)
-            self.own += step - last > APART_STEPS
-            self._touched[first, second] = step
+            else:
+                things.append((first, second))
+        for pair in things:
+            if step - self._touched.get(pair, _NEVER) > APART_STEPS:
+                self._blame(by_people=self._is_pushed(step))
+            self._touched[pair] = step
 
     def _meet(
         self,
@@ -79,12 +91,27 @@ class ContactCounter:
     ) -> None:
         """Count a person who was not touched lately, by whose doing it is."""
         person = self._person[leg]
-        if step - self._met.get(person, -APART_STEPS - 1) > APART_STEPS:
+        if step - self._met.get(person, _NEVER) > APART_STEPS:
             place, axis = data.contact.pos[contact], data.geom_xpos[leg]
             speed = _speed_towards(axis, place, base_position, base_velocity)
-            self.own += speed > OWN_MOTION
-            self.by_people += speed <= OWN_MOTION
+            self._pushes[person] = speed <= OWN_MOTION or self._is_pushed(step)
+            self._blame(by_people=self._pushes[person])
         self._met[person] = step
+        if self._pushes[person]:
+            self._pushed = step
+
+    def _is_pushed(self, step: int) -> bool:
+        """Whether people move the robot, or did until lately."""
+        return step - self._pushed <= APART_STEPS
+
+    def _blame(self, *, by_people: bool) -> None:
+        """Count a contact that is people's doing, or the robot's own."""
+        self.by_people += by_people
+        self.own += not by_people
+
+
+_NEVER = -APART_STEPS - 1
+"""The step of what has not happened."""
 
 
 def _speed_towards(

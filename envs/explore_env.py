@@ -113,7 +113,7 @@ class ExploreEnv(gym.Env[Observation, Action]):  # type: ignore[misc]  # mypy sk
 
     def step(self, action: Action) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         """Drive for one control period and map what was seen."""
-        observation, _, _, _, info = self._robot.step(action)
+        observation, _, toppled, _, info = self._robot.step(action)
         self._map(observation)
         before, self._coverage = self._coverage, self._meter.measure(self._mapper.grid)
         area = (self._coverage - before) * self._floor
@@ -122,7 +122,7 @@ class ExploreEnv(gym.Env[Observation, Action]):  # type: ignore[misc]  # mypy sk
         contact_reward = CONTACT_REWARD if touched else 0.0
         info = self._told(info, area, done_reward, contact_reward)
         reward = area + done_reward + contact_reward
-        return self._seen(observation), reward, bool(done or touched), False, info
+        return self._seen(observation), reward, bool(done or touched or toppled), False, info
 
     def render(self) -> NDArray[np.uint8] | None:
         """The picture of this moment, as the robot's environment draws it."""

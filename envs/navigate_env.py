@@ -93,7 +93,7 @@ class NavigateEnv(gym.Env[Observation, Action]):  # type: ignore[misc]  # mypy s
 
     def step(self, action: Action) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         """Drive for one control period."""
-        observation, _, _, _, info = self._robot.step(action)
+        observation, _, toppled, _, info = self._robot.step(action)
         distance = float(np.hypot(*(self._goal - info["pose_world"][:2])))
         progress, self._distance = self._distance - distance, distance
         arrived, touched = distance < GOAL_RADIUS, info["contacts"] > 0
@@ -101,7 +101,7 @@ class NavigateEnv(gym.Env[Observation, Action]):  # type: ignore[misc]  # mypy s
         contact_reward = CONTACT_REWARD if touched else 0.0
         info = self._told(info, progress, goal_reward, contact_reward)
         reward = progress + goal_reward + contact_reward
-        return self._seen(observation), reward, bool(arrived or touched), False, info
+        return self._seen(observation), reward, bool(arrived or touched or toppled), False, info
 
     def render(self) -> NDArray[np.uint8] | None:
         """The picture of this moment, as the robot's environment draws it."""

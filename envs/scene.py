@@ -112,6 +112,12 @@ def planar_pose(qpos: NDArray[np.float64]) -> Pose:
     return np.array((x, y, yaw))
 
 
+def lean_of(qpos: NDArray[np.float64]) -> float:
+    """How far base_link leans from upright [rad], 0 to pi; ``qpos`` as for ``planar_pose``."""
+    i, j = qpos[4:6].tolist()
+    return 2.0 * math.asin(min(math.hypot(i, j), 1.0))
+
+
 def planar_velocity(qpos: NDArray[np.float64], qvel: NDArray[np.float64]) -> tuple[float, float]:
     """Forward speed [m/s] and turn rate [rad/s] of base_footprint.
 

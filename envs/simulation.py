@@ -1,6 +1,6 @@
 """Turns velocity commands into the messages of a Burger that drives through a floor plan."""
 
-from dataclasses import dataclass
+import math
 from typing import Any
 
 import mujoco
@@ -23,8 +23,9 @@ from envs.lidar import BLOCK_STEPS, Lidar
 from envs.lidar_noise import LIDAR_PRESETS, LidarConfig
 from envs.presets import preset
 from envs.random_pedestrians import check_people, random_pedestrians
-from envs.scene import build_scene, place, planar_pose, planar_velocity
+from envs.scene import build_scene, lean_of, place, planar_pose, planar_velocity
 from envs.schedule import IMU_STEPS, is_odometry_step, next_event
+from envs.sensor_batch import SensorBatch
 from envs.stage_clock import stop_stage_clock
 from envs.walkers import Walkers
 from envs.wheel_encoders import (
@@ -41,23 +42,13 @@ from mapping.messages import ODOMETRY_COLUMNS
 SETTLE_STEPS = STEPS_PER_SECOND // 2
 """Steps in which the robot comes to rest on its tyres before time starts."""
 
+TOPPLED = math.radians(60.0)
+"""A robot that leans so far has fallen over and does not get up [rad]; driving leans it by 2 deg at
+most."""
+
 _TIMEOUT_STEPS = round(COMMAND_TIMEOUT * STEPS_PER_SECOND)
 _BLOCK_STATES = BLOCK_STEPS // IMU_STEPS + 1
 """States that the lidar needs to know how the base moved during a block."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SensorBatch:
-    """The messages of a stretch of time, oldest first."""
-
-    odometry: NDArray[np.float64]
-    """Rows ``(n, 6)``, columns messages.ODOMETRY_COLUMNS."""
-    imu: NDArray[np.float64]
-    """Rows ``(m, 11)``, columns messages.IMU_COLUMNS."""
-    scan_stamp: float | None
-    """Time of the first beam of the newest whole scan that ended in this stretch [s], if any."""
-    ranges: NDArray[np.float32] | None
-    """Its ranges ``(360,)`` [m]: ``+inf`` (or 0.0) is no return, 0.0 a failed beam."""
 
 
 class Simulation:
@@ -134,6 +125,11 @@ class Simulation:
     def contacts_by_people(self) -> int:
         """How often a person ran into the robot, which stood or moved away."""
         return self._contacts.by_people
+
+    @property
+    def has_toppled(self) -> bool:
+        """Whether the robot has fallen over, as people's feet may make it."""
+        return lean_of(self._qpos) > TOPPLED
 
     @property
     def pedestrians(self) -> NDArray[np.float64]:

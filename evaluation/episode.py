@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from time import perf_counter
 from typing import Any, Literal
 
 import gymnasium
@@ -12,30 +11,27 @@ from numpy.typing import ArrayLike, NDArray
 from envs.floor_plan import FloorPlan
 from envs.truth import truth_of_plan
 from envs.worlds import load_world
-from evaluation.held_interrupt import held_interrupt
-from evaluation.progress import Progress, progress_of
+from evaluation.episode_loop import EpisodeLoop
+from evaluation.failure import RunError
+from evaluation.progress import Progress
 from evaluation.recorder import Recorder
 from evaluation.track import Track
-from mapping.burger import LIDAR_RANGE_MAX, MAX_LINEAR_SPEED
 from mapping.coverage import CoverageMeter
 from mapping.errors import TestbedError
 from mapping.gap_filling import GapFilling, check_rule, with_gaps_filled
 from mapping.grid import OccupancyGrid
 from mapping.mappers import check_resolution, make_mapper
-from mapping.messages import ODOMETRY_COLUMNS
 from mapping.pose_graph import PoseGraph
 from mapping.pose_history import PoseHistory
 from mapping.slam.keyframe_pose_graph import pose_graph_of
 from mapping.truth import TruthMap
 from nav.agent import MappingAgent
-from nav.navigator import RUNNING, ChosenGoal, DroppedFrontier, Navigator
+from nav.navigator import ChosenGoal, DroppedFrontier, Navigator
 from nav.navigators import make_navigator
 from nav.route import parse_route
 
 ENVIRONMENT = "envs:TurtleBot3Burger-v0"
 CONTROL_PERIOD = 0.1
-TIME_LIMIT = "time_limit"
-INTERRUPTED = "interrupted"
 
 BATTERY_LIFE = 9000.0
 """How long a Burger drives on one charge [s]: 2 h 30 min (ROBOTIS e-manual, specifications)."""
@@ -150,6 +146,8 @@ def run_episode(
 
     Raises:
         TestbedError: If the config names something that does not exist or cannot be used.
+        RunError: If anything raises an error after the first turn; it carries the episode up to
+            there, and the error is its cause.
     """
     plan = load_world(config.world) if plan is None else plan
     agent = make_agent(config, plan)
@@ -226,52 +224,21 @@ def drive_episode(
     """Let an agent drive an environment to the end, as ``run_episode`` does with a config's own."""
     truth = truth_of_plan(plan, resolution=agent.mapper.grid.resolution)
     meter = CoverageMeter(truth)
-    track = Track()
-    coverages: list[tuple[float, float]] = []
-    observation, info = environment.reset(seed=config.seed)
-    stop_reason, next_report, telling = RUNNING, 0.0, 0.0
-    started = perf_counter()
-    try:
-        with held_interrupt() as check_interrupt:
-            while stop_reason == RUNNING:
-                check_interrupt()
-                action = agent.act(observation)
-                if recorder is not None:
-                    recorder.note(observation, action, agent.mapper.pose_map, agent.mapper.grid)
-                _note(track, observation, info, agent)
-                time = float(observation["time"][0])
-                stop_reason = agent.navigator.status
-                if time >= next_report or stop_reason != RUNNING:
-                    next_report = time + 1.0
-                    coverages.append((time, meter.measure(agent.mapper.grid, _changed(agent))))
-                    if on_progress is not None:
-                        told = perf_counter()
-                        on_progress(progress_of(coverages[-1], agent, observation, info))
-                        telling += perf_counter() - told
-                if stop_reason != RUNNING:
-                    break
-                observation, _, _, truncated, info = environment.step(action)
-                if truncated:
-                    stop_reason = TIME_LIMIT
-    except KeyboardInterrupt:
-        if len(track) == 0:
-            raise  # there is nothing to keep yet
-        stop_reason = INTERRUPTED
-    agent.mapper.finish()
-    wall_time = perf_counter() - started - telling
+    loop = EpisodeLoop(agent, environment, meter, on_progress, recorder)
+    loop.run(config.seed)
     grid = with_gaps_filled(agent.mapper.grid, config.gap_filling)
-    coverages.append((float(observation["time"][0]), meter.measure(grid)))
-    times, values = np.array(coverages).T
-    return Episode(
+    loop.coverages.append((loop.time, meter.measure(grid)))
+    times, values = np.array(loop.coverages).T
+    episode = Episode(
         config=config,
         plan=plan,
         truth=truth,
-        track=track,
+        track=loop.track,
         trajectory=agent.mapper.trajectory,
-        stop_reason=stop_reason,
-        wall_time=wall_time,
-        contacts=int(info["contacts"]),
-        contacts_by_people=int(info["contacts_by_people"]),
+        stop_reason=loop.stop_reason,
+        wall_time=loop.wall_time,
+        contacts=int(loop.info["contacts"]),
+        contacts_by_people=int(loop.info["contacts_by_people"]),
         coverage_times=times,
         coverages=values,
         grid=grid,
@@ -286,17 +253,6 @@ def drive_episode(
         recorder=recorder,
         pose_graph=pose_graph_of(agent.mapper),
     )
-
-
-def _changed(agent: MappingAgent) -> tuple[float, float, float, float]:
-    """Left, right, bottom and top [m] of what the last simulated second may have changed."""
-    x, y, _ = agent.mapper.pose_map
-    reach = LIDAR_RANGE_MAX + 2.0 * MAX_LINEAR_SPEED
-    return float(x - reach), float(x + reach), float(y - reach), float(y + reach)
-
-
-def _note(track: Track, observation: Any, info: dict[str, Any], agent: MappingAgent) -> None:
-    newest = observation["odometry"][-1]
-    pose_odom = newest[ODOMETRY_COLUMNS.index("x") : ODOMETRY_COLUMNS.index("yaw") + 1]
-    time = float(observation["time"][0])
-    track.note(time, agent.mapper.pose_map, info["pose_world"], pose_odom)
+    if loop.error is not None:
+        raise RunError(episode) from loop.error
+    return episode

@@ -5,7 +5,6 @@ keeps the peak memory in ``result.json`` that of the run.
 """
 
 import signal
-import traceback
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
@@ -13,19 +12,16 @@ from multiprocessing import get_context
 from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, cast
 
-from evaluation.episode import EpisodeConfig, run_episode
+from evaluation.episode import Episode, EpisodeConfig, run_episode
 from evaluation.episode_folder import write_run
+from evaluation.failure import FAILURE_FILE, RunError, details_of, reason_of, write_failure
 from evaluation.run_folder import describe, start_run, write_json
 from mapping.errors import TestbedError
-from mapping.io.atomic import write_atomically
 
 Job = tuple[EpisodeConfig, Path]
 """What to run, and the folder to write."""
-
-FAILURE_FILE = "failure.txt"
-"""File of a run folder that tells why a run has no result: one line, then the traceback if any."""
 
 START_METHOD: Literal["forkserver"] = "forkserver"
 """A process starts as a copy of one that has imported everything and run nothing."""
@@ -133,7 +129,7 @@ def _keep_failure(job: Job, outcome: Outcome) -> None:
     with suppress(TestbedError):  # the folder may be what failed
         start_run(folder)
         write_json(folder / "config.json", describe(config))
-        write_atomically(folder / FAILURE_FILE, lambda file: file.write(text.encode()))
+        write_failure(folder, text)
 
 
 def _run(config: EpisodeConfig, folder: Path, sender: Connection) -> None:
@@ -148,10 +144,10 @@ def _outcome_of(config: EpisodeConfig, folder: Path) -> Outcome:
         (folder / earlier).unlink(missing_ok=True)
     try:
         return write_run(run_episode(config), folder)
+    except RunError as error:
+        write_run(cast(Episode, error.left), folder)  # its map, for who looks for the defect
+        return Failure(reason=reason_of(error), details=details_of(error))
     except TestbedError as error:
         return Failure(reason=" ".join(str(error).split()))
     except Exception as error:  # a defect in one run must not end the others
-        first_line = next(iter(str(error).splitlines()), "")
-        return Failure(
-            reason=f"{type(error).__name__}: {first_line}", details=traceback.format_exc()
-        )
+        return Failure(reason=reason_of(error), details=details_of(error))

@@ -13,7 +13,7 @@ from types import FrameType
 
 @contextmanager
 def held_interrupt() -> Iterator[Callable[[], None]]:
-    """Within it Ctrl-C is raised only where what it yields is called, and by a second Ctrl-C.
+    """Within it Ctrl-C is raised only where what it yields is called, at its end, and by a second.
 
     Where Ctrl-C does not raise KeyboardInterrupt, in threads and where it is ignored, nothing is
     changed.
@@ -38,5 +38,6 @@ def held_interrupt() -> Iterator[Callable[[], None]]:
     signal.signal(signal.SIGINT, note)
     try:
         yield check
+        check()
     finally:
         signal.signal(signal.SIGINT, signal.default_int_handler)

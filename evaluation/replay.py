@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from evaluation.failure import RunError
 from evaluation.held_interrupt import held_interrupt
 from evaluation.log_feed import LogFeed
 from evaluation.recording import Recording
@@ -27,7 +28,7 @@ from mapping.settings import parse_settings
 from mapping.slam.keyframe_pose_graph import pose_graph_of
 from mapping.trajectory import Trajectory, completed, poses_at
 
-COMPLETE, INTERRUPTED = "complete", "interrupted"
+COMPLETE, INTERRUPTED, ERROR = "complete", "interrupted", "error"
 
 COARSE_CELL = 0.05
 """Edge of a map cell [m] for a lidar that sees a hall; for one like the LDS-01 it is the mapper's
@@ -120,13 +121,15 @@ def run_replay(
 
     Raises:
         TestbedError: The config names something that does not exist or cannot be used.
+        RunError: Anything raised an error after the first scan; it carries the replay up to there,
+            and the error is its cause.
     """
     config, log = _decided(config, recording), recording.log
     assert config.max_range is not None
     odometry = log.odometry if recording.is_simulated else rebased(log.odometry)
     mapper = _mapper(config, recording)
     feed = LogFeed(mapper, max_range=config.max_range, period=config.period)
-    stop_reason = COMPLETE
+    stop_reason, error = COMPLETE, None
     try:
         with held_interrupt() as check_interrupt:
             for period in replace(log, odometry=odometry).periods():
@@ -134,16 +137,21 @@ def run_replay(
                 feed.give(period)
                 if on_progress is not None:
                     on_progress(feed.scans)
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, Exception) as early_end:
         if mapper.updates == 0 or feed.scans == 0:
             raise  # there is nothing to keep yet
         stop_reason = INTERRUPTED
+        if isinstance(early_end, Exception):
+            stop_reason, error = ERROR, early_end
     started = perf_counter()
-    mapper.finish()
+    try:
+        mapper.finish()
+    except Exception as broken:
+        stop_reason, error = ERROR, error or broken
     grid, known = mapper.grid, mapper.trajectory
     wall_time = feed.wall_time + perf_counter() - started
     told = odometry_at_scans(log.scans[: feed.scans], odometry)
-    return Replay(
+    replay = Replay(
         config=config,
         recording=recording,
         grid=with_gaps_filled(grid, config.gap_filling),
@@ -159,6 +167,9 @@ def run_replay(
         map_update_stamps=np.array(feed.map_update_stamps),
         pose_graph=pose_graph_of(mapper),
     )
+    if error is not None:
+        raise RunError(replay) from error
+    return replay
 
 
 def check_replay(config: ReplayConfig, recording: Recording) -> None:

@@ -10,6 +10,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from evaluation.failure import FAILURE_FILE
 from mapping.errors import TestbedError
 from mapping.io.atomic import write_atomically
 from mapping.io.g2o import write_g2o
@@ -38,7 +39,7 @@ def run_folder(folder: Path) -> Iterator[None]:
     _make(folder)
     try:
         yield
-    except (TestbedError, KeyboardInterrupt):
+    except BaseException:
         if is_new and not any(folder.iterdir()):
             folder.rmdir()
         raise
@@ -51,7 +52,7 @@ def start_run(folder: Path) -> None:
         TestbedError: If it is a file, or nothing can be written there.
     """
     _make(folder)
-    for earlier in ("result.json", GOALS_FILE, ANIMATION_FILE):
+    for earlier in ("result.json", FAILURE_FILE, GOALS_FILE, ANIMATION_FILE):
         (folder / earlier).unlink(missing_ok=True)
 
 

@@ -2,6 +2,7 @@
 
 A robot of 0.2 m/s cannot outrun anybody, and a robot that stands is walked round or into, but runs
 into nobody. So it stands where that is enough, and steps aside where somebody comes straight at it.
+Where many walk about, each step aside may undo what it had got on; then it only stands.
 """
 
 import math
@@ -17,6 +18,7 @@ from mapping.errors import TestbedError
 from mapping.geometry import Pose
 from mapping.messages import Twist
 from nav.movers import Mover
+from nav.patience import Patience
 
 SHARES = (1.0, 0.5, 0.0)
 """Shares of the wanted twist that are tried, in turn."""
@@ -55,6 +57,10 @@ class YieldingConfig:
     """How long the robot goes on with a step aside before it thinks again [s]."""
     worth: float = 0.05
     """A step aside must give so much more room than standing [m]."""
+    patience: float = 10.0
+    """After giving way for so long without getting on, the robot steps aside no more [s]."""
+    progress: float = 1.0
+    """It has got on when it is so far from where the count began [m]."""
 
     def __post_init__(self) -> None:
         """Refuse figures that foresee nothing."""
@@ -74,6 +80,7 @@ class Yielding:
         self.config = config or YieldingConfig()
         self._aside = Twist()
         self._aside_until = -math.inf
+        self._patience = Patience(reach=self.config.progress, limit=self.config.patience)
 
     def limit(
         self, wanted: Twist, pose: Pose, time: float, movers: Sequence[Mover], allowed: Allowed
@@ -87,6 +94,14 @@ class Yielding:
             movers: What moves.
             allowed: Tells which steps aside run into nothing that stands.
         """
+        twist = self._choose(wanted, pose, time, movers, allowed)
+        self._patience.note(pose[:2], time, gives_way=twist != wanted)
+        return twist
+
+    def _choose(
+        self, wanted: Twist, pose: Pose, time: float, movers: Sequence[Mover], allowed: Allowed
+    ) -> Twist:
+        """What ``limit`` returns."""
         movers = [mover for mover in movers if not mover.is_known_to_stand]
         if not movers:
             return wanted
@@ -100,6 +115,8 @@ class Yielding:
             has_room = outlook.room(twist, self.config.committed) >= self.config.room
             if has_room and not outlook.may_be_run_into(twist):
                 return twist
+        if self._patience.is_out:
+            return Twist()
         self._aside = self._step_aside(outlook, allowed)
         if self._aside != Twist():
             self._aside_until = time + self.config.kept_for

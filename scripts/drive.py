@@ -21,6 +21,7 @@ from evaluation.episode import (
     navigator_of,
 )
 from evaluation.episode_folder import write_run
+from evaluation.failure import what_is_left
 from evaluation.kernels.warm_up import kernels_of_mapper
 from evaluation.map_snapshots import MapSnapshots
 from evaluation.pace import Pace
@@ -31,6 +32,7 @@ from nav.teleop import Teleop
 from scripts.arguments import parse
 from scripts.drive_session import DriveSession
 from scripts.explore import summary
+from scripts.failed_run import tell_failure
 from scripts.first_run import compile_if_needed
 from scripts.live_map import LiveMap, can_draw
 from scripts.raw_terminal import raw_terminal, read_keys
@@ -58,7 +60,7 @@ class Drive:
 
 
 def run(arguments: list[str]) -> int:
-    """Run the verb; 0 once the run is saved."""
+    """Run the verb; 0 once the run is saved, 1 when an error ended it."""
     options = parse(Drive, "drive", arguments)
     config = options.episode
     pace = Pace(CONTROL_PERIOD, options.speed)
@@ -71,13 +73,14 @@ def run(arguments: list[str]) -> int:
         compile_if_needed(
             kernels_of_mapper(config.mapper, simulates=True), check=lambda: check_episode(config)
         )
-        episode, late_share = _drive(options, out, pace, recorder)
+        episode, failure, late_share = _drive(options, out, pace, recorder)
         result = write_run(episode, out)
+        tell_failure(out, failure)
     print(summary(result))
     if late_share > NOTICED:
         print(f"this machine was too slow for {options.speed:g}x in {late_share:.0%} of the time")
     print(f"map, picture, trajectories and result.json are in {out}/")
-    return 0
+    return 1 if failure else 0
 
 
 def _check_terminal() -> None:
@@ -94,8 +97,13 @@ def _folder_name(config: EpisodeConfig) -> str:
 
 def _drive(
     options: Drive, out: Path, pace: Pace, recorder: Recorder | None
-) -> tuple[Episode, float]:
-    """Drive until the person quits; returns also the share of time the machine was too slow in."""
+) -> tuple[Episode, str, float]:
+    """Drive until the person quits.
+
+    Returns:
+        What is left of it, the error that ended it or nothing, and the share of time in which the
+        machine was too slow.
+    """
     config = options.episode
     plan = load_world(config.world)
     agent = make_agent(config, plan)
@@ -116,11 +124,13 @@ def _drive(
         agent.navigator = session
         driven = replace(config, navigator=f"{HAND}+{config.navigator}")
         with raw_terminal(terminal, on_resume=pace.restart):
-            episode = drive_episode(
-                driven, plan, agent, environment, session.note_progress, recorder
+            episode, failure = what_is_left(
+                lambda: drive_episode(
+                    driven, plan, agent, environment, session.note_progress, recorder
+                )
             )
             session.draw()
     finally:
         environment.close()
     snapshots.close()
-    return episode, session.late_share
+    return episode, failure, session.late_share

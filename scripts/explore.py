@@ -10,11 +10,13 @@ from envs.worlds import world_label
 from evaluation.animation.animation import Animation
 from evaluation.episode import Episode, EpisodeConfig, check_episode, run_episode
 from evaluation.episode_folder import write_run
+from evaluation.failure import what_is_left
 from evaluation.kernels.warm_up import kernels_of_mapper
 from evaluation.progress import Progress
 from evaluation.recorder import Recorder
 from evaluation.run_folder import run_folder
 from scripts.arguments import parse
+from scripts.failed_run import tell_failure
 from scripts.first_run import compile_if_needed
 from scripts.live_map import LiveMap, can_draw
 
@@ -43,7 +45,9 @@ def run(arguments: list[str]) -> int:
         compile_if_needed(
             kernels_of_mapper(config.mapper, simulates=True), check=lambda: check_episode(config)
         )
-        result = write_run(_watch(config, recorder, animation), out, animation)
+        episode, failure = what_is_left(lambda: _watch(config, recorder, animation))
+        result = write_run(episode, out, animation)
+        tell_failure(out, failure)
     print(summary(result))
     more = ", log.carmen, bag" if options.record else ""
     more += ", episode.gif" if options.animate else ""

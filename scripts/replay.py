@@ -7,6 +7,7 @@ from typing import Annotated, Any
 import tyro
 from tqdm import tqdm
 
+from evaluation.failure import what_is_left
 from evaluation.kernels.warm_up import kernels_of_mapper
 from evaluation.recording import load_recording
 from evaluation.replay import COMPLETE, Replay, ReplayConfig, check_replay, run_replay
@@ -14,6 +15,7 @@ from evaluation.replay_folder import write_replay
 from evaluation.run_folder import run_folder
 from mapping.errors import TestbedError
 from scripts.arguments import is_terminal, parse
+from scripts.failed_run import tell_failure
 from scripts.first_run import compile_if_needed
 
 
@@ -35,7 +37,9 @@ def run(arguments: list[str]) -> int:
     if out.resolve() in (log, log.parent):
         raise TestbedError(f"--out {out}: is where the log lies; must be another folder")
     with run_folder(out):
-        result = write_replay(_watch(config), out)
+        replay, failure = what_is_left(lambda: _watch(config))
+        result = write_replay(replay, out)
+        tell_failure(out, failure)
     print(summary(result))
     print(f"map, picture, trajectories and result.json are in {out}/")
     return 0 if result["stop_reason"] == COMPLETE else 1

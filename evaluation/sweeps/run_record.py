@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from evaluation.episode_pool import FAILURE_FILE
+from evaluation.failure import FAILURE_FILE
 from mapping.errors import TestbedError
 
 COMPLETE = "complete"

@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 
 from envs.floor_plan import Box, FloorPlan, Wall
 from envs.schedule import is_odometry_step, next_event
-from envs.simulation import SensorBatch, Simulation
+from envs.sensor_batch import SensorBatch
+from envs.simulation import Simulation
 from mapping.errors import TestbedError
 from mapping.geometry import wrap_to_pi
 

@@ -1,5 +1,6 @@
 """The two tasks keep Gymnasium's contract, pay what they say, and end when they say."""
 
+import math
 import warnings
 from typing import Any
 
@@ -8,6 +9,7 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
 
+from envs.burger_env import BurgerEnv
 from envs.explore_env import VIEW_CELLS, ExploreEnv
 from envs.floor_plan import Box, FloorPlan, Wall
 from envs.navigate_env import GOAL_RADIUS, NEAREST_GOAL, NavigateEnv
@@ -122,3 +124,16 @@ def test_a_start_in_another_room_has_its_goals_and_its_floor_there() -> None:
     explore = ExploreEnv(rooms)
     explore.reset(seed=0, options=there)
     assert run_out(explore, LEFT, 20)[1]["coverage"] > 0.5
+
+
+@pytest.mark.parametrize("kind", [BurgerEnv, ExploreEnv, NavigateEnv])
+def test_an_episode_ends_when_the_robot_has_toppled(kind: type[gym.Env[Any, Any]]) -> None:
+    env = kind(ROOM)  # type: ignore[call-arg]
+    env.reset(seed=1)
+    assert not env.step(AHEAD)[2]
+    robot = env if isinstance(env, BurgerEnv) else env._robot  # type: ignore[attr-defined]
+    qpos, _ = robot.scene_state
+    qpos[2:7] = (0.1, math.sqrt(0.5), math.sqrt(0.5), 0.0, 0.0)
+    _, _, terminated, truncated, _ = env.step(AHEAD)
+    assert terminated
+    assert not truncated

@@ -1,15 +1,19 @@
 """People are seen where they are at each beam's time, and touches are laid at the right door."""
 
 import math
+from dataclasses import replace
 
 import mujoco
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
 
-from envs.floor_plan import FloorPlan, Pedestrian, Wall
+from envs.floor_plan import Box, FloorPlan, Pedestrian, Wall
 from envs.pedestrian_kernels import stop_at_legs
 from envs.pedestrians import LEG_RADIUS, feet_at, gaits_of
-from envs.scene import LEG_GROUP, SOLID_GROUP
+from envs.scene import LEG_GROUP, SOLID_GROUP, lean_of
 from envs.simulation import Simulation
 from mapping.burger import LIDAR_BEAMS, LIDAR_POSE_BASE, LIDAR_RANGE_MAX, LIDAR_SCAN_TIME
 from mapping.geometry import compose
@@ -162,3 +166,50 @@ def test_time_is_cut_anywhere_and_the_touches_are_the_same() -> None:
             simulation.advance(period)
         counts.append((simulation.contacts, simulation.contacts_by_people))
     assert counts[0] == counts[1]
+
+
+def pushed_into_a_box() -> Simulation:
+    """Somebody has come along from behind and pushed the robot aside, where a box stands."""
+    person = Pedestrian(waypoints=((-3.0, -0.14), (3.0, -0.14)), speed=1.2, phase=0.2)
+    box = Box(center=(0.0, 0.65), size=(6.0, 1.0))
+    simulation = Simulation(replace(hall(person), boxes=(box,)), rng=0)
+    while simulation.time < 3.0:
+        simulation.advance()
+    return simulation
+
+
+def test_what_a_person_pushes_the_robot_into_is_the_persons_doing() -> None:
+    simulation = pushed_into_a_box()
+    assert simulation.contacts == 0
+    assert simulation.contacts_by_people >= 2, "the person's, and the box's"
+
+
+def test_what_the_robot_drives_into_afterwards_is_its_own_doing() -> None:
+    simulation = pushed_into_a_box()
+    by_people = simulation.contacts_by_people
+    simulation.carry_off((2.0, -3.6, -0.5 * math.pi))
+    for _ in range(30):
+        simulation.command(0.2, 0.0)
+        simulation.advance()
+    assert simulation.contacts >= 1
+    assert simulation.contacts_by_people == by_people
+
+
+@given(st.floats(-math.pi, math.pi), st.floats(-math.pi, math.pi), st.floats(0.0, math.pi))
+def test_a_robot_leans_as_far_as_its_axis_is_from_upright(
+    yaw: float, direction: float, lean: float
+) -> None:
+    axis = Rotation.from_euler("z", yaw)
+    tilt = Rotation.from_rotvec(lean * np.array((math.cos(direction), math.sin(direction), 0.0)))
+    x, y, z, w = (tilt * axis).as_quat()
+    assert lean_of(np.array((0.0, 0.0, 0.0, w, x, y, z))) == pytest.approx(lean, abs=1e-6)
+
+
+def test_a_robot_that_lies_on_its_side_has_toppled_and_one_that_drives_has_not() -> None:
+    simulation = Simulation(hall(), rng=0)
+    simulation.command(0.22, 0.0)
+    simulation.advance(0.4)
+    assert not simulation.has_toppled
+    simulation.data.qpos[2:7] = (0.1, math.sqrt(0.5), math.sqrt(0.5), 0.0, 0.0)
+    simulation.advance(1.0)
+    assert simulation.has_toppled

@@ -2,21 +2,25 @@
 
 import dataclasses
 import json
+import signal
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 from unittest.mock import patch
 
 import numpy as np
 import pytest
 
 from envs.floor_plan import Route
-from evaluation.episode import EpisodeConfig, run_episode
+from evaluation.episode import Episode, EpisodeConfig, run_episode
 from evaluation.episode_folder import write_run
+from evaluation.failure import RunError
 from evaluation.kernels.warm_up import TINY_ROOM
 from evaluation.progress import Progress
 from evaluation.result import TIMING_KEYS
 from mapping.errors import TestbedError
 from mapping.io.map_server import read_map
+from mapping.slam.graph_slam import GraphSlam
 
 SHORT = EpisodeConfig(world="tiny_room", seed=3, time_limit=15.0)
 
@@ -119,6 +123,62 @@ def test_ctrl_c_ends_an_episode_and_keeps_the_map(tmp_path: Path) -> None:
 def test_ctrl_c_before_the_first_step_leaves_nothing_to_keep() -> None:
     agent_acts = patch("nav.agent.MappingAgent.act", side_effect=KeyboardInterrupt)
     with agent_acts, pytest.raises(KeyboardInterrupt):
+        run_episode(SHORT, plan=TINY_ROOM)
+
+
+def test_ctrl_c_in_the_last_turn_is_not_lost() -> None:
+    def press(progress: Progress) -> None:
+        if progress.time > 1.1:
+            signal.raise_signal(signal.SIGINT)
+
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        episode = run_episode(EpisodeConfig(time_limit=1.1), press, plan=TINY_ROOM)
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert episode.stop_reason == "interrupted"
+
+
+def test_a_robot_that_topples_ends_its_episode() -> None:
+    fallen = patch("envs.simulation.lean_of", side_effect=[0.0] * 30 + [1.5] * 10)
+    with fallen:
+        episode = run_episode(SHORT, plan=TINY_ROOM)
+    assert episode.stop_reason == "toppled"
+    assert episode.sim_time == pytest.approx(3.3)
+
+
+def failing_after(calls: int) -> Any:
+    """A mapper that takes so many scans, then has a defect."""
+    update, left = GraphSlam.update, iter(range(calls))
+
+    def fail(self: GraphSlam, *messages: Any) -> bool:
+        if next(left, None) is None:
+            raise ZeroDivisionError("a defect of one's own")
+        return update(self, *messages)
+
+    return patch.object(GraphSlam, "update", fail)
+
+
+def test_an_error_ends_a_run_and_keeps_its_map(tmp_path: Path) -> None:
+    with failing_after(40), pytest.raises(RunError) as caught:
+        run_episode(SHORT, plan=TINY_ROOM)
+    assert isinstance(caught.value.__cause__, ZeroDivisionError)
+    assert isinstance(caught.value.left, Episode)
+    result = write_run(caught.value.left, tmp_path)
+    assert result["stop_reason"] == "error"
+    assert result["coverage"] > 0.1
+
+
+def test_an_error_when_the_map_is_finished_keeps_it_unfinished() -> None:
+    broken = patch.object(GraphSlam, "finish", side_effect=ZeroDivisionError)
+    with broken, pytest.raises(RunError) as caught:
+        run_episode(replace(SHORT, time_limit=2.0), plan=TINY_ROOM)
+    assert isinstance(caught.value.left, Episode)
+    assert (caught.value.left.grid.states() == 0).any(), "free floor"
+
+
+def test_an_error_before_there_is_anything_to_keep_comes_as_it_is() -> None:
+    with failing_after(0), pytest.raises(ZeroDivisionError):
         run_episode(SHORT, plan=TINY_ROOM)
 
 

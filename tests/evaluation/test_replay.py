@@ -8,8 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from evaluation.failure import RunError
 from evaluation.recording import Recording
-from evaluation.replay import ReplayConfig, run_replay
+from evaluation.replay import Replay, ReplayConfig, run_replay
 from evaluation.replay_folder import write_replay
 from mapping.errors import TestbedError
 from mapping.geometry import between
@@ -84,6 +85,20 @@ def test_ctrl_c_ends_a_replay_and_keeps_the_map(tmp_path: Path) -> None:
     assert len(replay.trajectory.stamps) == 20
     assert replay.map_updates == 20
     assert write_replay(replay, tmp_path)["coverage"] > 0.1
+
+
+def test_an_error_ends_a_replay_and_keeps_its_map(tmp_path: Path) -> None:
+    def fail(scans: int) -> None:
+        if scans == 20:
+            raise ZeroDivisionError("a defect of one's own")
+
+    with pytest.raises(RunError) as caught:
+        run_replay(COARSE, RUN, fail)
+    assert isinstance(caught.value.__cause__, ZeroDivisionError)
+    assert isinstance(caught.value.left, Replay)
+    result = write_replay(caught.value.left, tmp_path)
+    assert result["stop_reason"] == "error"
+    assert result["coverage"] > 0.1
 
 
 def test_ctrl_c_before_the_first_scan_leaves_nothing_to_keep() -> None:

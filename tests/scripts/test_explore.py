@@ -8,10 +8,12 @@ import struct
 import sys
 import termios
 from pathlib import Path
+from unittest.mock import patch
 
 import pytest
 from PIL import Image
 
+from mapping.slam.graph_slam import GraphSlam
 from scripts.__main__ import run
 
 WORDS = ["explore", "--world", "empty_room", "--odometry", "truth", "--time-limit", "4"]
@@ -25,6 +27,22 @@ def test_in_a_pipe_it_prints_the_result_and_nothing_else(
     assert "empty_room: time_limit after 4 s" in captured.out
     assert all(line.startswith("compiling") for line in captured.err.splitlines())
     assert json.loads((tmp_path / "result.json").read_text())["stop_reason"] == "time_limit"
+
+
+def test_an_error_ends_a_run_whose_map_and_traceback_are_kept(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    broken = patch.object(GraphSlam, "finish", side_effect=ZeroDivisionError("a defect"))
+    with broken:
+        assert run([*WORDS, "--out", str(tmp_path)]) == 1
+    captured = capsys.readouterr()
+    assert "empty_room: error after 4 s" in captured.out
+    assert captured.err.endswith("ZeroDivisionError: a defect\n")
+    told = (tmp_path / "failure.txt").read_text()
+    assert told.startswith("ZeroDivisionError: a defect\n\nTraceback")
+    assert json.loads((tmp_path / "result.json").read_text())["stop_reason"] == "error"
+    assert run([*WORDS, "--out", str(tmp_path)]) == 1, "out of time"
+    assert not (tmp_path / "failure.txt").exists()
 
 
 def test_an_animated_run_says_that_it_left_a_moving_picture(
