@@ -68,6 +68,10 @@ class SceneCamera:
         mujoco.mjr_readPixels(pixels, None, frame, self._drawer)
         return pixels[::-1].copy()  # OpenGL's first row is the lowest
 
+    def __reduce__(self) -> tuple[type["SceneCamera"], tuple[FloorPlan, int | None]]:
+        """A copy opens an OpenGL context of its own when it draws first: none can be copied."""
+        return SceneCamera, (self._plan, self._people)
+
     def close(self) -> None:
         """Give the OpenGL context back; may be called again, and pictures may follow."""
         if self._size is not None:

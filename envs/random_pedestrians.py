@@ -64,9 +64,9 @@ def random_pedestrians(
     """
     if count == 0:
         return ()
-    floor = _WalkingFloor(plan)
-    robot = (plan.start if start is None else start)[:2]
-    return tuple(_draw(plan, floor, robot, rng) for _ in range(count))
+    start = plan.start if start is None else start
+    floor = _WalkingFloor(plan, start)
+    return tuple(_draw(plan, floor, start[:2], rng) for _ in range(count))
 
 
 def check_people(count: int) -> None:
@@ -97,9 +97,9 @@ def _draw(
 
 
 class _WalkingFloor:
-    """The floor where people can walk, as cells and the ways between them."""
+    """The floor joined to a place where people can walk, as cells and the ways between them."""
 
-    def __init__(self, plan: FloorPlan) -> None:
+    def __init__(self, plan: FloorPlan, start: tuple[float, float, float]) -> None:
         self._origin, shape = lattice_for(plan, _RESOLUTION, margin=2.0 * _RESOLUTION)
         solid = rasterize_solids(
             plan.solids(),
@@ -108,7 +108,7 @@ class _WalkingFloor:
             shape=shape,
             slack=0.5 * _RESOLUTION,  # so that no thin leg of a chair falls between the centres
         )
-        self._walkable = _joined_to(plan.start, ~solid, self._origin)
+        self._walkable = _joined_to(start, ~solid, self._origin)
         away = ndimage.distance_transform_edt(np.pad(self._walkable, 1))[1:-1, 1:-1]
         self._walkable &= away * _RESOLUTION >= CLEARANCE
         self._cells = np.argwhere(self._walkable)

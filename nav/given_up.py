@@ -86,9 +86,14 @@ class GivenUp:
     ) -> tuple[DroppedFrontier, ...]:
         """Those of ``frontiers``, the ones still there, that were given up, with the reason.
 
-        The others are among them too if there is a reason for them, ``otherwise``.
+        The others are among them too if there is a reason for them, ``otherwise``. What counts as
+        one, a border and the opening in it, is told once, the first of them.
         """
-        reasons = [(frontier, self.reason(frontier) or otherwise) for frontier in frontiers]
+        told: list[Frontier] = []
+        for frontier in frontiers:
+            if all(other.distance_to(frontier.middle) >= SAME_PLACE for other in told):
+                told.append(frontier)
+        reasons = [(frontier, self.reason(frontier) or otherwise) for frontier in told]
         return tuple(
             DroppedFrontier(
                 x=float(frontier.middle[0]),

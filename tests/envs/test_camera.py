@@ -1,5 +1,9 @@
 """Pictures show the robot and the plan; where there is no OpenGL, the error says what to do."""
 
+import copy
+import pickle
+from collections.abc import Callable
+
 import mujoco
 import numpy as np
 import pytest
@@ -71,3 +75,14 @@ def test_without_opengl_the_error_names_the_cure(
     monkeypatch.setattr(mujoco, "MjrContext", no_context)
     with pytest.raises(TestbedError, match=r"render: no OpenGL .*MUJOCO_GL=egl"):
         SceneCamera(PLAN).picture(qpos, "top", 80, 60)
+
+
+@pytest.mark.parametrize("copied", [copy.deepcopy, lambda made: pickle.loads(pickle.dumps(made))])
+def test_a_copy_of_a_camera_that_has_drawn_draws_the_same(
+    camera: SceneCamera, qpos: np.ndarray, copied: Callable[[SceneCamera], SceneCamera]
+) -> None:
+    picture = camera.picture(qpos, "chase", 32, 24)
+    twin = copied(camera)
+    assert np.array_equal(twin.picture(qpos, "chase", 32, 24), picture)
+    twin.close()
+    assert np.array_equal(camera.picture(qpos, "chase", 32, 24), picture)

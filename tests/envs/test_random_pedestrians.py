@@ -42,6 +42,17 @@ def test_no_leg_is_ever_in_a_solid_or_near_the_robot_at_time_0(seed: int) -> Non
     assert min(math.dist(foot, plan.start[:2]) for foot in feet[0]) >= START_ROOM
 
 
+def test_people_walk_in_the_room_that_the_episode_starts_in() -> None:
+    rooms = tuple(
+        Wall(points=((x, 0.0), (x + 4.0, 0.0), (x + 4.0, 3.0), (x, 3.0)), closed=True)
+        for x in (0.0, 5.0)
+    )
+    env = BurgerEnv(FloorPlan(name="two", start=(1.0, 1.0, 0.0), walls=rooms), people=2)
+    for x in (1.0, 6.0):
+        _, info = env.reset(seed=1, options={"start": (x, 1.0, 0.0)})
+        assert np.all(np.abs(info["pedestrians"][:, 0] - x - 1.0) < 2.0)
+
+
 def test_the_same_seed_draws_the_same_people() -> None:
     plan = load_world("lim_room")
     first, again, other = (

@@ -200,6 +200,12 @@ def test_a_frontier_given_up_gets_one_second_chance_and_keeps_its_last_reason() 
     assert (left.x, left.y, left.reason) == (2.0, 1.0, "second")
 
 
+def test_a_place_left_over_is_told_once_however_many_borders_it_has() -> None:
+    border, opening, other = frontier_at(2.0, 1.0), frontier_at(2.2, 1.1), frontier_at(2.0, 2.0)
+    left = GivenUp().left_over([border, opening, other], "no time")
+    assert [(each.x, each.y) for each in left] == [(2.0, 1.0), (2.0, 2.0)]
+
+
 def test_standing_still_loses_headway_after_its_patience_and_moving_keeps_it() -> None:
     headway = Headway(HeadwayConfig(patience=2.0))
     assert not any(headway.is_lost(np.array([0.02 * k, 0.0, 0.0]), 0.1) for k in range(100))
