@@ -55,10 +55,13 @@ def summary(result: dict[str, Any]) -> str:
             f"  then position error {result['error_rmse_m']:.3f} m rms, "
             f"{result['error_max_m']:.3f} m max   heading {result['yaw_rmse_deg']:.2f} deg rms"
         )
+    update = result["update_ms_p50"]
+    if update is None:
+        return "\n".join((*lines, "  no scan saw anything to localise by"))
     lines.append(
         f"  ambiguous for {result['ambiguous_s']:.1f} s, sure of a wrong place for "
         f"{result['surely_wrong_s']:.1f} s   size {result['size_first']} -> "
-        f"{result['size_median']:.0f}   {result['update_ms_p50']:.2f} ms a scan"
+        f"{result['size_median']:.0f}   {update:.2f} ms a scan"
     )
     return "\n".join(lines)
 

@@ -49,7 +49,7 @@ class LocalizationRun:
     sizes: NDArray[np.int64]
     """Particles, cells looked at, or landmarks ``(n,)``."""
     update_seconds: NDArray[np.float64]
-    """Wall time of each update that used a scan ``(m,)`` [s]."""
+    """Wall time of each update that used a scan ``(m,)`` [s]; none where no scan saw anything."""
     update_sizes: NDArray[np.int64]
     """The size of the belief after it ``(m,)``."""
     snapshots: tuple[Snapshot, ...]
@@ -100,7 +100,7 @@ class LocalizationRecording:
     def run(self, wall_time: float) -> LocalizationRun:
         """What there is now."""
         weights, ambiguous, sizes = zip(*self._rows, strict=True)
-        seconds, update_sizes = zip(*self._updates, strict=True)
+        seconds, update_sizes = np.array(self._updates, dtype=np.float64).reshape(-1, 2).T
         return LocalizationRun(
             config=self.config,
             map_file=self._map_file,
@@ -108,8 +108,8 @@ class LocalizationRecording:
             weights=np.array(weights, dtype=np.float64),
             ambiguous=np.array(ambiguous, dtype=np.bool_),
             sizes=np.array(sizes, dtype=np.int64),
-            update_seconds=np.array(seconds, dtype=np.float64),
-            update_sizes=np.array(update_sizes, dtype=np.int64),
+            update_seconds=seconds,
+            update_sizes=update_sizes.astype(np.int64),
             snapshots=tuple(self._snapshots),
             kidnapped_at=self.kidnapped_at,
             wall_time=wall_time,

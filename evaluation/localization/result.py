@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from evaluation.episode import CONTROL_PERIOD
 from evaluation.localization.recording import LocalizationRun
+from evaluation.result import percentile_ms
 from mapping.geometry import between
 
 NEAR_M, NEAR_DEG = 0.25, 10.0
@@ -88,7 +89,6 @@ def result_of(run: LocalizationRun) -> dict[str, Any]:
     if found_again is not None:
         tracked |= stamps >= found_again
     sure = (run.weights > 0.0) & ~run.ambiguous
-    milliseconds = 1e3 * run.update_seconds
     return {
         "world": config.world,
         "map": str(config.map),
@@ -113,9 +113,9 @@ def result_of(run: LocalizationRun) -> dict[str, Any]:
         "size_first": int(run.sizes[0]),
         "size_median": float(np.median(run.sizes)),
         "size_max": int(run.sizes.max()),
-        "update_ms_p50": float(np.percentile(milliseconds, 50)),
-        "update_ms_p99": float(np.percentile(milliseconds, 99)),
-        "update_ms_max": float(milliseconds.max()),
+        "update_ms_p50": percentile_ms(run.update_seconds, 50),
+        "update_ms_p99": percentile_ms(run.update_seconds, 99),
+        "update_ms_max": percentile_ms(run.update_seconds, 100),
     }
 
 

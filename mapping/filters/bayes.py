@@ -47,10 +47,14 @@ def correct(prior: ArrayLike, likelihood: ArrayLike) -> Array:
             to 1.
 
     Raises:
-        TestbedError: The measurement is impossible in every state that is thought possible.
+        TestbedError: The measurement is impossible in every state that is thought possible, or a
+            likelihood is negative.
     """
     prior = _distribution("prior", prior)
-    joint = prior * np.asarray(likelihood, dtype=np.float64)
+    likelihood = np.asarray(likelihood, dtype=np.float64)
+    if np.any(likelihood < 0.0):
+        raise TestbedError(f"likelihood: {np.nanmin(likelihood)}; must be 0 or more")
+    joint = prior * likelihood
     evidence = float(joint.sum())
     if not (math.isfinite(evidence) and evidence > 0.0):
         raise TestbedError(
@@ -80,10 +84,10 @@ def correct_binary(p_one: float, likelihood_zero: float, likelihood_one: float) 
         likelihood_one: p(z | 1) of it.
 
     Raises:
-        TestbedError: The measurement is impossible in both states.
+        TestbedError: The measurement is impossible in both states, or a likelihood is negative.
     """
     zero, one = likelihood_zero * (1.0 - p_one), likelihood_one * p_one
-    if not zero + one > 0.0:
+    if not (zero >= 0.0 and one >= 0.0 and zero + one > 0.0):
         raise TestbedError(f"likelihood: {likelihood_zero}, {likelihood_one}; must explain z")
     return one / (zero + one)
 

@@ -70,6 +70,9 @@ class HistogramFilter:
         """Move the belief; each box's probability goes where its middle may go.
 
         What would leave the space is spread over what stays in.
+
+        Raises:
+            TestbedError: All of it would leave; nothing is changed.
         """
         prior = np.zeros_like(self.belief)
         for center, probability in zip(self.centers, self.belief, strict=True):
@@ -78,7 +81,10 @@ class HistogramFilter:
                 total = float(density.sum())
                 if total > 0.0:
                     prior += probability / total * density
-        self.belief = prior / prior.sum()
+        total = float(prior.sum())
+        if not total > 0.0:
+            raise TestbedError(f"transition: keeps {total} of the belief; some must stay in space")
+        self.belief = prior / total
 
     def correct(self, likelihood: Likelihood) -> None:
         """Weigh every box by the likelihood at its middle.

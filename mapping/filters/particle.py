@@ -133,8 +133,15 @@ class ParticleFilter:
 
         Returns:
             log p(z_t): how well the belief before expected the measurement.
+
+        Raises:
+            TestbedError: A likelihood is NaN or infinite, or the evidence is; nothing is changed.
         """
         logs = np.asarray(log_likelihoods, dtype=np.float64)
+        if not np.all(logs < math.inf):
+            raise TestbedError("log_likelihoods: NaN or +inf among them; must be below +inf")
+        if evidence is not None and not math.isfinite(evidence):
+            raise TestbedError(f"evidence: {evidence}; must be finite")
         with np.errstate(divide="ignore"):
             weighed = np.log(self.weights) + logs
         expected = float(logsumexp(weighed))

@@ -78,6 +78,9 @@ class HistogramLocalizer(HypothesisLocalizer):
             config: Settings.
             start: The start pose ``(3,)`` if it is known; else all poses are equally likely.
             start_sigmas: How sure it is [m, m, rad].
+
+        Raises:
+            TestbedError: The robot fits nowhere near the start.
         """
         self.config = config or HistogramLocalizerConfig()
         reader = self.config.reader
@@ -89,6 +92,9 @@ class HistogramLocalizer(HypothesisLocalizer):
         self._belief = self._possible / self._possible.sum()
         if start is not None:
             self._belief = self._belief * _bell(self._poses, np.asarray(start), start_sigmas)
+            if not self._belief.sum() > 0.0:
+                x, y, _ = np.asarray(start).tolist()
+                raise TestbedError(f"start: ({x:g}, {y:g}); the robot must fit there on the map")
             self._belief /= self._belief.sum()
         self._usual = self._field.best
         self._pending = np.zeros(3)

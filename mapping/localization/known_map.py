@@ -40,6 +40,13 @@ class KnownMap:
         poses[:, 2] = rng.uniform(-np.pi, np.pi, count)
         return poses
 
+    def holds(self, x: float, y: float) -> bool:
+        """Whether a point [m] lies on the map; NaN does not."""
+        rows, columns = self.occupied.shape
+        right = self.origin[0] + columns * self.resolution
+        top = self.origin[1] + rows * self.resolution
+        return bool(self.origin[0] <= x < right and self.origin[1] <= y < top)
+
     def fits(self, points: NDArray[np.float64], radius: float = ROBOT_RADIUS) -> NDArray[np.bool_]:
         """Whether the robot's centre may be at points ``(n, 2)`` [m]: far enough from walls."""
         cells = np.floor((points - self.origin) / self.resolution).astype(np.int64)

@@ -10,6 +10,7 @@ from mapping.localization.histogram_localizer import HistogramLocalizer
 from mapping.localization.known_map import KnownMap
 from mapping.localization.localizer import Localizer
 from mapping.localization.particle_localizer import ParticleLocalizer
+from mapping.odometry_mapper import checked_pose
 
 FilterName = Literal["particle", "histogram", "ekf"]
 
@@ -40,9 +41,14 @@ def make_localizer(
         seed: Of the random numbers of ``particle``; the others draw none.
 
     Raises:
-        TestbedError: As ``check_localizer``.
+        TestbedError: As ``check_localizer``; or the start is no pose on the map, or the robot fits
+            nowhere near it.
     """
     check_localizer(name, knows_start=start is not None)
+    if start is not None:
+        x, y, _ = checked_pose("start", start).tolist()
+        if not known.holds(x, y):
+            raise TestbedError(f"start: ({x:g}, {y:g}); must lie on the map, in its frame")
     if name == "particle":
         return ParticleLocalizer(known, start=start, seed=seed)
     if name == "histogram":

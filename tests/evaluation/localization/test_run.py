@@ -2,13 +2,16 @@
 
 import json
 from pathlib import Path
+from unittest.mock import patch
 
 import numpy as np
 import pytest
 
+from envs.floor_plan import FloorPlan, Wall
 from evaluation.kernels.warm_up import TINY_ROOM
 from evaluation.localization.config import LocalizationConfig
 from evaluation.localization.folder import BELIEF_COLUMNS, write_localization
+from evaluation.localization.places import Places
 from evaluation.localization.recording import LocalizationRun
 from evaluation.localization.result import (
     TIMING_KEYS,
@@ -19,7 +22,11 @@ from evaluation.localization.result import (
 from evaluation.localization.run import run_localization
 from evaluation.localization.warm_up import tiny_map
 from mapping.errors import TestbedError
+from mapping.grid import FREE, OCCUPIED
+from mapping.io.map_server import MapFile
 from mapping.io.tum import read_tum
+from mapping.localization.localizers import FilterName
+from scripts.localize import summary
 
 
 def errors(meters: list[float], degrees: list[float] | None = None) -> Errors:
@@ -111,3 +118,23 @@ def test_what_makes_no_run_is_refused() -> None:
         config(filter="ekf")
     assert config(kidnap=60.0).end == 120.0
     assert config().end == 60.0
+
+
+@pytest.mark.parametrize("name", ["particle", "histogram", "ekf"])
+def test_where_no_scan_sees_anything_the_result_says_so(name: FilterName, tmp_path: Path) -> None:
+    far = ((-9.0, -9.0), (9.0, -9.0), (9.0, 9.0), (-9.0, 9.0))
+    hall = FloorPlan(name="hall", start=(0.0, 0.0, 0.0), walls=(Wall(points=far, closed=True),))
+    states = np.full((180, 180), FREE, dtype=np.int8)
+    states[[0, -1]] = states[:, [0, -1]] = OCCUPIED
+    config = LocalizationConfig(
+        map=Path("hall.yaml"), world="hall", filter=name, start="known", seed=1, time_limit=1.0
+    )
+    with patch.object(Places, "draw", return_value=(0.5, 0.5, 0.3)):
+        run = run_localization(
+            config, plan=hall, map_file=MapFile(resolution=0.1, origin=(-9.0, -9.0), states=states)
+        )
+    result = write_localization(run, tmp_path)
+    assert result["updates"] == 0
+    assert result["update_ms_p50"] is None
+    assert result["localized_at_s"] is None
+    assert "no scan saw anything" in summary(result)

@@ -94,3 +94,11 @@ def test_what_cannot_be_is_refused() -> None:
         bayes.correct([1.0, 0.0], [0.0, 1.0])
     with pytest.raises(TestbedError, match="likelihood"):
         bayes.correct_binary(1.0, 1.0, 0.0)
+
+
+@pytest.mark.parametrize("likelihood", [[0.5, -0.1], [1.0, np.nan], [-1.0, -1.0]])
+def test_likelihoods_that_are_no_probabilities_are_refused(likelihood: list[float]) -> None:
+    with pytest.raises(TestbedError, match="likelihood"):
+        bayes.correct([0.5, 0.5], likelihood)
+    with pytest.raises(TestbedError, match="likelihood"):
+        bayes.correct_binary(0.5, *likelihood)

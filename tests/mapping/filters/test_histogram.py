@@ -119,3 +119,10 @@ def test_what_makes_no_histogram_is_refused() -> None:
         TreeConfig(smallest=(0.1,), split_above=0.01, merge_below=0.02)
     with pytest.raises(TestbedError, match="evidence"):
         HistogramFilter([0.0], [1.0], (3,)).correct(lambda x: np.zeros(len(x)))
+
+
+def test_a_belief_that_would_leave_the_space_is_refused_and_stays() -> None:
+    boxes = HistogramFilter([0.0], [1.0], (10,))
+    with pytest.raises(TestbedError, match="transition"):
+        boxes.predict(lambda states, before: np.zeros(len(states)))
+    assert boxes.belief == pytest.approx(np.full(10, 0.1))

@@ -131,3 +131,18 @@ def test_what_makes_no_filter_is_refused() -> None:
         ParticleConfig(slow_rate=0.5, fast_rate=0.1)
     with pytest.raises(TestbedError, match="bins"):
         ParticleConfig(bins=(0.0,))
+
+
+@pytest.mark.parametrize("wrong", [np.nan, np.inf])
+def test_a_likelihood_that_is_none_is_refused_and_harms_nothing(wrong: float) -> None:
+    config = ParticleConfig(slow_rate=0.01, fast_rate=0.1)
+    particles = ParticleFilter(config, np.zeros((2, 1)), np.random.default_rng(0))
+    particles.correct([-1.0, -2.0])
+    weights, usual = particles.weights.copy(), particles.usual_evidence
+    with pytest.raises(TestbedError, match="log_likelihoods"):
+        particles.correct([-1.0, wrong])
+    with pytest.raises(TestbedError, match="evidence"):
+        particles.correct([-1.0, -1.0], evidence=wrong)
+    assert np.array_equal(particles.weights, weights)
+    assert particles.usual_evidence == usual
+    assert np.isfinite(particles.random_share)

@@ -132,3 +132,19 @@ def test_the_same_seed_gives_the_same_belief() -> None:
         driven(localizer, L_ROOM, L_ROOM_WAY[:2])
         ends.append(localizer.sample.tobytes())
     assert ends[0] == ends[1]
+
+
+@pytest.mark.parametrize("name", ["particle", "histogram", "ekf"])
+@pytest.mark.parametrize("start", [(90.0, 0.0, 0.0), (math.nan, 0.0, 0.0), (1.0, 2.0)])
+def test_a_start_that_is_not_on_the_map_is_refused(name: str, start: tuple[float, ...]) -> None:
+    with pytest.raises(TestbedError, match="start"):
+        make_localizer(name, KNOWN, start=start)
+
+
+def test_a_histogram_refuses_a_start_where_the_robot_fits_nowhere() -> None:
+    row, column = np.argwhere(KNOWN.occupied)[0]
+    x, y = (
+        KNOWN.origin[k] + (cell + 0.5) * KNOWN.resolution for k, cell in ((0, column), (1, row))
+    )
+    with pytest.raises(TestbedError, match="must fit there"):
+        HistogramLocalizer(KNOWN, start=(x, y, 0.0), start_sigmas=(0.001, 0.001, 0.1))
