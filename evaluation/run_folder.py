@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from evaluation.failure import FAILURE_FILE
+from evaluation.source_digest import digest_of_sources
 from mapping.errors import TestbedError
 from mapping.io.atomic import write_atomically
 from mapping.io.g2o import write_g2o
@@ -59,13 +60,14 @@ def start_run(folder: Path) -> None:
 def describe(
     config: "EpisodeConfig | ReplayConfig | CalibrationConfig | LocalizationConfig",
 ) -> dict[str, Any]:
-    """Everything that defines the run: the config, the versions, the commit."""
+    """Everything that defines the run: the config, the versions, the commit, the sources."""
     told = asdict(config)
     return {
         **{key: str(value) if isinstance(value, Path) else value for key, value in told.items()},
         "versions": {name: version(name) for name in RECORDED_VERSIONS},
         "python": platform.python_version(),
         "git_commit": _git_commit(),
+        "source_digest": digest_of_sources(),
     }
 
 

@@ -4,7 +4,6 @@ What a run needs shows when it is over: the kernels that were called. They are n
 compiled code, so that a note is gone when that is.
 """
 
-import hashlib
 import json
 import sys
 from pathlib import Path
@@ -12,12 +11,9 @@ from pathlib import Path
 from numba import config
 from numba.core.dispatcher import Dispatcher
 
+from evaluation.source_digest import PACKAGES, ROOT, digest_with_imports
 from mapping.deskew_kernels import interpolate
 from mapping.io.atomic import write_atomically
-
-PACKAGES = ("mapping", "nav", "envs", "evaluation")
-
-ROOT = Path(__file__).resolve().parents[2]
 
 
 def is_compiled(kind: str) -> bool:
@@ -38,8 +34,8 @@ def is_compiled(kind: str) -> bool:
 def forget_stale_kernels() -> None:
     """Take away all compiled code if any kernel's source has changed since it was compiled.
 
-    Numba compares a kernel with its own file only: one that calls kernels of other files would go
-    on with what those were.
+    Numba compares a kernel with its own file only: one that calls kernels of other files, or has
+    constants of theirs, would go on with what those were.
     """
     note = _note_of("fingerprint")
     if note is None:
@@ -79,14 +75,9 @@ def called_kernels() -> dict[str, str]:
 
 
 def _fingerprint() -> str:
-    """A hash of every source file that holds a kernel."""
-    digest = hashlib.sha256()
-    for name in PACKAGES:
-        for source in sorted((ROOT / name).rglob("*.py")):
-            text = source.read_bytes()
-            if b"njit" in text:
-                digest.update(text)
-    return digest.hexdigest()
+    """A digest of every source file that holds a kernel, and of those whose constants it has."""
+    sources = (source for name in PACKAGES for source in (ROOT / name).rglob("*.py"))
+    return digest_with_imports(source for source in sources if b"njit" in source.read_bytes())
 
 
 def _note_of(kind: str) -> Path | None:

@@ -34,6 +34,7 @@ from evaluation.episode import EpisodeConfig, check_episode
 from evaluation.scenarios.criterion import Criterion
 from evaluation.scenarios.scenario import DEFAULT_SEEDS, Region, Scenario
 from evaluation.scenarios.yaml_lines import YamlLines, read_yaml_lines
+from evaluation.seed_count import MOST_SEEDS
 from mapping.errors import TestbedError
 from mapping.settings import parse_settings
 
@@ -114,9 +115,9 @@ def _world(folder: Path, name: str) -> str:
 
 def _seeds(file: YamlLines) -> tuple[int, ...]:
     value = file.values.get("seeds", len(DEFAULT_SEEDS))
-    counted = tuple(range(value)) if _is_whole(value) and value > 0 else value
+    counted = tuple(range(value)) if _is_whole(value) and 0 < value <= MOST_SEEDS else value
     if not isinstance(counted, tuple | list) or not counted or not all(map(_is_whole, counted)):
-        file.refuse(("seeds",), "how many, 1 or more, or a list of whole numbers")
+        file.refuse(("seeds",), f"how many, 1 to {MOST_SEEDS}, or a list of whole numbers")
     return tuple(counted)
 
 
@@ -162,6 +163,9 @@ def _criteria_of(file: YamlLines, place: tuple[str, str]) -> list[Criterion]:
             file.refuse((*place, "of"), "a scenario's name or file")
         if of and "max_ratio" not in bounds:
             file.complain((*place, "of"), f"criteria: {key}: of: stands without max_ratio")
+        least, most = bounds.get("min"), bounds.get("max")
+        if _is_number(least) and _is_number(most) and least > most:
+            file.refuse(place, "bounds that a value can keep: min at most max")
         return [
             Criterion(key=key, bound=bound, value=value, of=of if bound == "max_ratio" else "")
             for bound, value in bounds.items()

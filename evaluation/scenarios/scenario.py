@@ -9,6 +9,7 @@ from typing import Any
 from evaluation.episode import EpisodeConfig
 from evaluation.scenarios.criterion import COVERAGE_IN, Criterion
 from evaluation.scenarios.yaml_lines import nearest
+from evaluation.seed_count import check_seed_count
 from mapping.errors import TestbedError
 
 DEFAULT_SEEDS = (0, 1, 2, 3, 4)
@@ -94,10 +95,9 @@ class Scenario:
         """The same with so many seeds: its own first, then the numbers after the largest of them.
 
         Raises:
-            TestbedError: If the count is not positive.
+            TestbedError: If ``check_seed_count`` refuses the count.
         """
-        if count < 1:
-            raise TestbedError(f"seeds: {count}; must be 1 or more")
+        check_seed_count(count)
         more = range(max(self.seeds) + 1, max(self.seeds) + 1 + count)
         return replace(self, seeds=(*self.seeds, *more)[:count])
 

@@ -15,7 +15,14 @@ from matplotlib.lines import Line2D
 from PIL import Image
 
 from evaluation.sweeps.run_record import RunRecord
-from evaluation.sweeps.run_table import RunGroup, group_runs, short_name
+from evaluation.sweeps.run_table import (
+    ALWAYS_SHOWN,
+    VARIANT_KEYS,
+    RunGroup,
+    group_runs,
+    short_name,
+    varied,
+)
 
 PANELS = (
     ("t95_s", "time to 95 % coverage [s]"),
@@ -45,12 +52,12 @@ THUMBNAIL_COLOURS = 128
 def dot_plots(runs: Sequence[RunRecord]) -> str:
     """A dot for each run in every panel, a row for each world, as an SVG element.
 
-    Variants of mapper, navigator and odometry differ in colour, marker and height in the row; a
-    bar marks their median. A run that never covered 95 % stands as a cross at the right edge.
+    Variants of what was run differ in colour, marker and height in the row; a bar marks their
+    median. A run that never covered 95 % stands as a cross at the right edge.
     """
     groups = group_runs([run for run in runs if run.result])
     worlds = list(dict.fromkeys(group.world for group in groups))
-    variants = list(dict.fromkeys(_variant(group) for group in groups))
+    variants = list(dict.fromkeys(group.variant for group in groups))
     height = 1.1 + ROW_HEIGHT * len(worlds) * (len(variants) + 0.6) + 0.2 * len(variants)
     figure = Figure(figsize=(12.0, height), layout="constrained")
     panels = figure.subplots(1, len(PANELS), sharey=True)
@@ -60,7 +67,7 @@ def dot_plots(runs: Sequence[RunRecord]) -> str:
     panels[0].set_yticks(np.arange(len(worlds)), [short_name(world) for world in worlds])
     panels[0].set_ylim(len(worlds) - 0.5, -0.5)
     handles = [Line2D([], [], linestyle="", **_style(i)) for i in range(len(variants))]
-    figure.legend(handles, _labels(variants), loc="outside upper left", ncols=4, frameon=False)
+    figure.legend(handles, _labels(groups), loc="outside upper left", ncols=4, frameon=False)
     text = io.StringIO()
     # a fixed salt keeps the ids, and so the bytes, the same
     with rc_context({"svg.hashsalt": "report", "svg.fonttype": "none"}):
@@ -82,17 +89,17 @@ def thumbnail(picture: Path) -> str | None:
     return "data:image/png;base64," + base64.b64encode(file.getvalue()).decode()
 
 
-def _variant(group: RunGroup) -> tuple[str, str, str]:
-    return group.mapper, group.navigator, group.odometry
-
-
-def _labels(variants: Sequence[tuple[str, str, str]]) -> list[str]:
+def _labels(groups: Sequence[RunGroup]) -> list[str]:
     """What tells the variants apart; the navigator alone where nothing else does."""
-    differ = [len(set(part)) > 1 for part in zip(*variants, strict=True)]
-    shown = differ if any(differ) else [False, True, False]
+    differ = varied(groups)
+    shown = differ if any(differ) else [key == "navigator" for key in VARIANT_KEYS]
     return [
-        ", ".join(part for part, is_shown in zip(variant, shown, strict=True) if is_shown)
-        for variant in variants
+        ", ".join(
+            told if key in ALWAYS_SHOWN or told[:1].isalpha() else f"{key} {told}"
+            for key, told, is_shown in zip(VARIANT_KEYS, variant, shown, strict=True)
+            if is_shown
+        )
+        for variant in dict.fromkeys(group.variant for group in groups)
     ]
 
 
@@ -100,14 +107,14 @@ def _draw_panel(
     ax: Axes,
     groups: Sequence[RunGroup],
     worlds: Sequence[str],
-    variants: Sequence[tuple[str, str, str]],
+    variants: Sequence[tuple[str, ...]],
     key: str,
 ) -> None:
     step = 1.0 / (len(variants) + 0.6)
     finite = [value for group in groups for value in group.values(key) if np.isfinite(value)]
     edge = 1.06 * max(finite, default=1.0)
     for group in groups:
-        i = variants.index(_variant(group))
+        i = variants.index(group.variant)
         y = worlds.index(group.world) + (i - 0.5 * (len(variants) - 1)) * step
         colour = COLOURS[i % len(COLOURS)]
         values = group.values(key)

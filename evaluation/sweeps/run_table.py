@@ -1,4 +1,4 @@
-"""Sums up many runs in a table: a row for each world, mapper, navigator and odometry."""
+"""Sums up many runs in a table: a row for each world and each variant of what was run there."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -9,8 +9,17 @@ from numpy.typing import NDArray
 
 from evaluation.sweeps.run_record import RunRecord
 
-KEYS = ("world", "mapper", "navigator", "odometry")
-"""What runs of one row share, as the config names it."""
+VARIANT_KEYS = (
+    *("mapper", "navigator", "odometry", "odometry_yaw", "imu", "lidar", "people"),
+    *("resolution", "gap_filling", "waypoints", "time_limit"),
+)
+"""What tells variants apart, as the config names it: all but the world and the seed."""
+
+ALWAYS_SHOWN = ("mapper", "navigator")
+"""Keys that stand in the table even if all runs agree."""
+
+KEYS = ("world", *VARIANT_KEYS)
+"""What runs of one row share."""
 
 ALL_WORLDS = "all worlds"
 
@@ -20,9 +29,8 @@ class RunGroup:
     """Runs that differ in their seed only, or in their world as well."""
 
     world: str
-    mapper: str
-    navigator: str
-    odometry: str
+    variant: tuple[str, ...]
+    """What the config has under VARIANT_KEYS."""
     runs: tuple[RunRecord, ...]
 
     @property
@@ -84,28 +92,38 @@ COLUMNS: tuple[tuple[str, Callable[[RunGroup], str]], ...] = (
 
 
 def group_runs(runs: Sequence[RunRecord]) -> tuple[RunGroup, ...]:
-    """Runs by world, mapper, navigator and odometry, in the order in which they come."""
-    return _grouped(runs, KEYS)
+    """Runs by world and variant, in the order in which they come."""
+    return _grouped(runs, lambda run: run.told("world"))
 
 
 def group_over_worlds(runs: Sequence[RunRecord]) -> tuple[RunGroup, ...]:
-    """Runs by mapper, navigator and odometry: what compares decision rules over worlds."""
-    return _grouped(runs, KEYS[1:])
+    """Runs by variant alone: what compares decision rules over worlds."""
+    return _grouped(runs, lambda run: ALL_WORLDS)
+
+
+def varied(groups: Sequence[RunGroup]) -> list[bool]:
+    """For each of VARIANT_KEYS whether groups differ in it."""
+    return [len(set(told)) > 1 for told in zip(*(each.variant for each in groups), strict=True)]
 
 
 def table_of(runs: Sequence[RunRecord]) -> list[list[str]]:
     """The whole table as text: headings, a row for each group, then rows over all worlds.
 
-    The odometry stands in it only where it differs between runs; the rows over all worlds where
-    there is more than one.
+    Mapper and navigator always stand in it, what else tells variants apart where it differs between
+    runs; the rows over all worlds where there is more than one.
     """
     groups = list(group_runs(runs))
     if len({group.world for group in groups}) > 1:
         groups += group_over_worlds(runs)
-    keys = KEYS if len({group.odometry for group in groups}) > 1 else KEYS[:3]
-    rows = [[*keys, *(heading for heading, _ in COLUMNS)]]
+    shown = [
+        key
+        for key, differs in zip(VARIANT_KEYS, varied(groups), strict=True)
+        if differs or key in ALWAYS_SHOWN
+    ]
+    rows = [["world", *shown, *(heading for heading, _ in COLUMNS)]]
     for group in groups:
-        named = [str(getattr(group, key)) for key in keys[1:]]
+        told = dict(zip(VARIANT_KEYS, group.variant, strict=True))
+        named = [told[key] for key in shown]
         rows.append([short_name(group.world), *named, *(text(group) for _, text in COLUMNS)])
     return rows
 
@@ -115,13 +133,14 @@ def short_name(world: str) -> str:
     return world.rsplit("/", maxsplit=1)[-1]
 
 
-def _grouped(runs: Sequence[RunRecord], keys: tuple[str, ...]) -> tuple[RunGroup, ...]:
-    grouped: dict[tuple[str, ...], list[RunRecord]] = {}
+def _grouped(
+    runs: Sequence[RunRecord], world_of: Callable[[RunRecord], str]
+) -> tuple[RunGroup, ...]:
+    grouped: dict[tuple[str, tuple[str, ...]], list[RunRecord]] = {}
     for run in runs:
-        grouped.setdefault(tuple(run.told(key) for key in keys), []).append(run)
+        variant = tuple(run.told(key) for key in VARIANT_KEYS)
+        grouped.setdefault((world_of(run), variant), []).append(run)
     return tuple(
-        RunGroup(
-            **{"world": ALL_WORLDS, **dict(zip(keys, named, strict=True))}, runs=tuple(members)
-        )
-        for named, members in grouped.items()
+        RunGroup(world=world, variant=variant, runs=tuple(members))
+        for (world, variant), members in grouped.items()
     )

@@ -14,6 +14,7 @@ from envs.worlds import load_world, world_label
 from evaluation.episode import BATTERY_LIFE, EpisodeConfig, check_episode
 from evaluation.episode_pool import Failure, Outcome, run_episodes
 from evaluation.run_folder import describe
+from evaluation.seed_count import check_seed_count
 from evaluation.sweeps.run_record import RunRecord, read_json
 from mapping.errors import TestbedError
 from mapping.io.atomic import write_atomically
@@ -48,8 +49,7 @@ class SweepConfig:
         for field in ("worlds", "mappers", "navigators", "odometry"):
             if not getattr(self, field):
                 raise TestbedError(f"{field}: none; must be one at least")
-        if self.seeds < 1:
-            raise TestbedError(f"seeds: {self.seeds}; must be 1 or more")
+        check_seed_count(self.seeds)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -94,7 +94,7 @@ def plan_sweep(config: SweepConfig, out: Path) -> Planned:
 
 
 def finished_runs(planned: Planned) -> dict[Path, RunRecord]:
-    """Those runs that an earlier sweep has finished: same config, same versions, same commit."""
+    """Those runs that an earlier sweep has finished: same config, versions and sources."""
     finished = {}
     for folder, episode in planned.items():
         if not all((folder / name).is_file() for name in ("config.json", "result.json")):

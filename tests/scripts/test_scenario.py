@@ -64,7 +64,7 @@ def test_the_list_names_every_built_in_scenario(capsys: pytest.CaptureFixture[st
     ("words", "told"),
     [
         (["run", "lim_rom"], "did you mean lim_room?"),
-        (["run", "empty_room", "--seeds", "0"], "seeds: 0; must be 1 or more"),
+        (["run", "empty_room", "--seeds", "0"], "seeds: 0; must be 1 to 100000"),
         (["run", "empty_room", "--jobs", "0"], "--jobs: 0; must be 1 or more"),
         (["run", "empty_room", "--mapper", "none_such"], "mapper: 'none_such'; must be one of"),
         (["play"], "'play' is unknown; must be one of list, run"),

@@ -64,7 +64,7 @@ def test_seeds_may_be_listed_and_are_continued_after_the_largest(tmp_path: Path)
     assert scenario.seeds == (7, 3)
     assert scenario.with_seeds(1).seeds == (7,)
     assert scenario.with_seeds(4).seeds == (7, 3, 8, 9)
-    with pytest.raises(TestbedError, match="seeds: 0; must be 1 or more"):
+    with pytest.raises(TestbedError, match="seeds: 0; must be 1 to"):
         scenario.with_seeds(0)
 
 
@@ -96,7 +96,8 @@ def test_a_missing_field_is_told(tmp_path: Path) -> None:
     [
         ("time_limit: 60", "time_limit: long", "line 6: time_limit: 'long'; must be a number"),
         ("time_limit: 60", "time_limit: [1]", "line 6: time_limit: [1]; must be one value"),
-        ("seeds: 2", "seeds: 0", "line 5: seeds: 0; must be how many, 1 or more, or a list"),
+        ("seeds: 2", "seeds: 0", "line 5: seeds: 0; must be how many, 1 to 100000, or a"),
+        ("seeds: 2", "seeds: 10000000000", "line 5: seeds: 10000000000; must be how many"),
         ("seeds: 2", "seeds: [1, 1]", "line 5: seeds: [1, 1]; must be different numbers"),
         ("seeds: 2", "seeds: [-1]", "line 5: seeds: [-1]; must be different numbers, 0 or more"),
         ("seeds: 2", "seeds: [a]", "line 5: seeds: ['a']; must be how many"),
@@ -105,6 +106,11 @@ def test_a_missing_field_is_told(tmp_path: Path) -> None:
         ("[0, 0, 1, 1]", "[0, 0, 1]", "line 8: regions: corner: [0, 0, 1]; must be four numbers"),
         ("[0, 0, 1, 1]", "[1, 0, 1, 1]", "line 8: regions: corner: [1, 0, 1, 1]; must be [xmin"),
         ("{min: 0.9}", "0.9", "line 10: criteria: coverage: 0.9; must be keys and values: min"),
+        (
+            "{min: 0.9}",
+            "{min: 1, max: 0}",
+            "line 10: criteria: coverage: {'max': 0, 'min': 1}; must be bounds",
+        ),
         ("{min: 0.9}", "{}", "line 10: criteria: coverage: {}; must be one of min, max"),
     ],
 )

@@ -85,6 +85,8 @@ def test_a_sweep_of_nothing_is_refused() -> None:
         SweepConfig(worlds=())
     with pytest.raises(TestbedError, match="seeds: 0"):
         SweepConfig(worlds=("lim_room",), seeds=0)
+    with pytest.raises(TestbedError, match="seeds: 100000000000"):
+        SweepConfig(worlds=("lim_room",), seeds=10**11)
 
 
 def test_a_sweep_that_was_interrupted_goes_on_and_ends_in_the_same_table(
@@ -181,6 +183,25 @@ def test_the_table_sums_up_each_variant_over_the_worlds() -> None:
     over_all = dict(zip(headings, rows[3], strict=True))
     assert (over_all["runs"], over_all["complete"], over_all["contacts"]) == ("2", "100%", "2")
     assert over_all["coverage"] == "0.900"
+
+
+@pytest.mark.parametrize(("key", "values"), [("people", (0, 3)), ("lidar", ("ideal", "measured"))])
+def test_runs_that_differ_in_anything_but_the_seed_are_not_summed_up(
+    key: str, values: tuple[object, object]
+) -> None:
+    named = {"world": "a", "mapper": "m", "navigator": "x"}
+    runs = [
+        RunRecord(
+            folder=Path("w"),
+            config={**named, key: value, "seed": seed},
+            result={"stop_reason": "complete"},
+        )
+        for value in values
+        for seed in (0, 1)
+    ]
+    headings, *rows = table_of(runs)
+    assert headings[:5] == ["world", "mapper", "navigator", key, "runs"]
+    assert [row[3:5] for row in rows] == [[str(value), "2"] for value in values]
 
 
 def test_the_command_says_what_it_keeps_and_exits_as_it_went(
