@@ -30,9 +30,11 @@ class LogFeed:
         self._mapper = mapper
         self._max_range = max_range
         self._period = period
-        self._last_scan = self._last_odometry = -np.inf
+        self._last_scan = self._last_odometry = self._stamp = -np.inf
         self.scans = 0
         """How many scans there were, given or not."""
+        self.repeated = 0
+        """How many of them had the stamp of the one before; a mapper takes that for the same."""
         self.oldest, self.newest = np.inf, -np.inf
         """The earliest and the latest stamp so far [s]."""
         self.wall_time = 0.0
@@ -63,6 +65,8 @@ class LogFeed:
         """The scan with its range cut, or None when the mapper got one not long ago."""
         if scan is None:
             return None
+        self.repeated += scan.stamp == self._stamp
+        self._stamp = scan.stamp
         if self._period > 0.0 and isfinite(scan.stamp):
             if scan.stamp < self._last_scan + self._period - STAMP_ROUNDING:
                 return None

@@ -15,7 +15,6 @@ from mapping.geometry import Pose
 from mapping.io.relations import read_relations
 from mapping.io.sensor_log_file import RECORDED_BAG, RECORDED_LOG, read_log
 from mapping.io.tum import read_tum
-from mapping.log_editing import reach_of
 from mapping.odometry_trajectory import odometry_at_scans
 from mapping.relations import STAMP_TOLERANCE, Relations, match_relations
 from mapping.sensor_log import SensorLog
@@ -94,7 +93,6 @@ def check_recording(recording: Recording, relations: Path | None = None) -> None
     log = recording.log
     if not log.scans:
         raise TestbedError(f"{log.source}: there is no laser scan; must have at least one")
-    reach_of(log)
     stamps = odometry_at_scans(log.scans, log.odometry).stamps
     if len(stamps) == 0:
         raise TestbedError(

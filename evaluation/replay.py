@@ -162,7 +162,7 @@ def run_replay(
         log_time=feed.newest - feed.oldest,
         wall_time=wall_time,
         map_updates=mapper.updates,
-        scans_dropped=mapper.scans_dropped,
+        scans_dropped=mapper.scans_dropped + feed.repeated,
         map_update_seconds=np.array(feed.map_update_seconds),
         map_update_stamps=np.array(feed.map_update_stamps),
         pose_graph=pose_graph_of(mapper),
@@ -183,7 +183,7 @@ def check_replay(config: ReplayConfig, recording: Recording) -> None:
 
 def _decided(config: ReplayConfig, recording: Recording) -> ReplayConfig:
     """The config with the defaults that depend on how far the log's lidar sees."""
-    reach = reach_of(recording.log)
+    reach = reach_of(recording.log, config.max_range)
     names = {noise: name for name, noise in RANGE_NOISES.items()}
     own = COARSE_CELL if reach > LONG_RANGE else None
     return replace(

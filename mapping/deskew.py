@@ -6,7 +6,6 @@ drawn from one pose is badly bent.
 
 from collections import deque
 from collections.abc import Sequence
-from math import isfinite
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -44,13 +43,10 @@ class OdometryTrack:
         return self._rows[-1][5] if self._rows else 0.0
 
     def add(self, odometry: Sequence[Odometry]) -> None:
-        """Take new messages; one that is not finite, or no newer than the newest, is ignored."""
+        """Take new messages; one not usable, or no newer than the newest, is ignored."""
         for message in odometry:
-            twist = message.twist
-            x, y, yaw = message.pose_odom.tolist()
-            row = (message.stamp, x, y, yaw, twist.linear_x, twist.angular_z)
-            if all(map(isfinite, row)) and (not self._rows or row[0] > self._rows[-1][0]):
-                self._rows.append(row)
+            if message.is_usable and (not self._rows or message.stamp > self._rows[-1][0]):
+                self._rows.append(message.row)
         forget_old(self._rows)
 
     def poses_at(self, stamps: ArrayLike) -> Pose | None:

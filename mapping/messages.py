@@ -6,6 +6,7 @@ so that mappers and navigators see the same types from the simulator and from a 
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from math import isfinite
 from typing import Any, overload
 
 import numpy as np
@@ -88,6 +89,11 @@ class LaserScan:
         return cls(stamp=stamp, ranges=ranges)
 
 
+FARTHEST_ODOMETRY = 1e8
+"""Odometry farther from where it started than this [m] tells nothing: its numbers have steps of
+more than 10 nm, and what is left of small motions after a jump that far would be noise."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Odometry:
     """What the wheel encoders say, nav_msgs/Odometry in the plane."""
@@ -98,6 +104,19 @@ class Odometry:
     """Pose of base_footprint ``(3,)`` in the frame where the robot started."""
     twist: Twist
     """Velocity in base_footprint."""
+
+    @property
+    def row(self) -> tuple[float, float, float, float, float, float]:
+        """The message as numbers, in the order of ODOMETRY_COLUMNS."""
+        x, y, yaw = self.pose_odom.tolist()
+        return self.stamp, x, y, yaw, self.twist.linear_x, self.twist.angular_z
+
+    @property
+    def is_usable(self) -> bool:
+        """Whether every number is finite, and the place no farther than FARTHEST_ODOMETRY."""
+        row = self.row
+        far = FARTHEST_ODOMETRY
+        return all(map(isfinite, row)) and abs(row[1]) <= far and abs(row[2]) <= far
 
     @classmethod
     def from_observation(cls, observation: Observation) -> "Sequence[Odometry]":

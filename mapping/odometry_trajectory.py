@@ -12,7 +12,7 @@ from mapping.trajectory import Trajectory
 
 
 def odometry_trajectory(odometry: Sequence[Odometry]) -> Trajectory:
-    """The poses of the messages; one not finite, or no later than one before, is left out."""
+    """The poses of the messages; one not usable, or no later than one before, is left out."""
     rows = _rows(odometry)
     return Trajectory(stamps=rows[:, 0].copy(), poses=rows[:, 1:4].copy())
 
@@ -34,14 +34,8 @@ def odometry_at_scans(scans: Sequence[LaserScan], odometry: Sequence[Odometry]) 
 
 def _rows(odometry: Sequence[Odometry]) -> NDArray[np.float64]:
     """Stamp, pose, speed and turn rate of each message that counts ``(n, 6)``."""
-    rows = np.array(
-        [
-            (each.stamp, *each.pose_odom, each.twist.linear_x, each.twist.angular_z)
-            for each in odometry
-        ],
-        dtype=np.float64,
-    ).reshape(-1, 6)
-    rows = rows[np.all(np.isfinite(rows), axis=1)]
+    usable = [each.row for each in odometry if each.is_usable]
+    rows = np.array(usable, dtype=np.float64).reshape(-1, 6)
     return rows[_ascending(rows[:, 0])]
 
 

@@ -150,6 +150,8 @@ class _Lines:
         start, fov, step, max_range = _numbers(words, 2, 4)
         ranges, after = _readings(words, 8)
         _, after = _readings(words, after)
+        if not all(map(math.isfinite, (start, fov, step))):
+            raise ValueError
         if step == 0.0:
             step = fov / max(len(ranges) - 1, 1)
         if words[1] in SICK_TYPES or not max_range > 0.0:

@@ -138,7 +138,8 @@ class _Bag:
                 odometry, bases = _odometry_of_transforms(moving)
             lidar = tree.find(scan_frames[0], (*bases[:1], *BASE_FRAMES)) if scan_frames else None
         if lidar is None:
-            LOGGER.warning("%s: no transform from robot to lidar; taken as zero", self.path)
+            if odometry:  # else there is nothing to map, which is told instead
+                LOGGER.warning("%s: no transform from robot to lidar; taken as zero", self.path)
             lidar = np.eye(4)
         mount = tree.find(imu_frames[0], (*bases[:1], *BASE_FRAMES)) if imu_frames else None
         told = [message for message in imu if message is not None]

@@ -41,7 +41,7 @@ Row = tuple[float, ...]
 class FusedTrack:
     """The fused poses of the last moments, in the odometry's frame.
 
-    A message that is not finite, or no newer than the newest, is ignored. A jump, a motion faster
+    A message that is not usable, or no newer than the newest, is ignored. A jump, a motion faster
     than the settings allow, is not believed and counted in ``jumps``: the robot is taken to go on
     as before, anywhere within what the allowed speeds reach.
     """
@@ -87,11 +87,9 @@ class FusedTrack:
                 self._rates, turn_rates(imu), since, self.config.max_turn_rate, MOST_RATES
             )
         for message in odometry:
-            twist = message.twist
-            pose = message.pose_odom.tolist()
-            row: Row = (message.stamp, *pose, twist.linear_x, twist.angular_z)
-            if not all(map(math.isfinite, row)):
+            if not message.is_usable:
                 continue
+            row = message.row
             if self._odometry is None:
                 self._odometry = row
                 self._filter.begin(row[1], row[2], row[3])

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from math import isfinite, pi
+from math import pi
 
 import numpy as np
 
@@ -17,10 +17,6 @@ MAX_TURN_RATE = 2.0 * pi
 
 TURN_JUMP = 1.0
 """What a turn may exceed that by [rad]; in the Intel log one comes 0.52 rad too soon."""
-
-FARTHEST = 1e8
-"""Odometry farther away than this [m] tells nothing: its numbers have steps of more than 10 nm, and
-what is left of small motions after a jump that far would be noise."""
 
 
 class SteadyOdometry:
@@ -37,14 +33,11 @@ class SteadyOdometry:
     def steady(self, messages: Sequence[Odometry]) -> Iterator[Odometry]:
         """The messages as they would be without jumps, oldest first.
 
-        A message that is not finite, farther away than FARTHEST, or no newer than the newest, is
-        left out. A twist that no robot has is taken as standing still.
+        A message that is not usable, or no newer than the newest, is left out. A twist that no
+        robot has is taken as standing still.
         """
         for message in messages:
-            row = (message.stamp, *message.pose_odom, message.twist.linear_x)
-            if not all(map(isfinite, (*row, message.twist.angular_z))):
-                continue
-            if np.abs(message.pose_odom[:2]).max() > FARTHEST:
+            if not message.is_usable:
                 continue
             if self._newest is not None and message.stamp <= self._newest.stamp:
                 continue

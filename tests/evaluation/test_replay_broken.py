@@ -55,3 +55,35 @@ def test_an_odometry_that_jumps_to_the_end_of_the_world_takes_no_memory(
     assert np.all(np.isfinite(replay.grid.log_odds))
     assert np.all(np.isfinite(replay.trajectory.poses))
     assert np.count_nonzero(replay.grid.log_odds) > 500, "12 m2 in cells of 0.01 m2"
+
+
+@pytest.mark.parametrize("mapper", MAPPERS)
+@pytest.mark.parametrize("far", [1e30, 1e308])
+def test_single_messages_from_beyond_the_world_are_left_out(mapper: str, far: float) -> None:
+    odometry = [
+        replace(each, pose_odom=np.array([far, -far, 0.0])) if i % 40 == 0 else each
+        for i, each in enumerate(LOG.odometry)
+    ]
+    config = replace(COARSE, mapper=mapper, resolution=0.1)
+    replay = run_replay(config, Recording(log=replace(LOG, odometry=odometry)))
+    assert np.all(np.isfinite(replay.grid.log_odds))
+    assert np.abs(replay.trajectory.poses).max() < 10.0
+
+
+@pytest.mark.parametrize("range_max", [0.0, np.inf, np.nan])
+def test_a_log_that_does_not_tell_its_range_is_mapped_with_one_that_is_given(
+    range_max: float,
+) -> None:
+    scans = [replace(scan, range_max=range_max) for scan in LOG.scans]
+    silent, told = (
+        run_replay(replace(COARSE, max_range=3.0), Recording(log=replace(LOG, scans=each)))
+        for each in (scans, LOG.scans)
+    )
+    assert silent.config.max_range == 3.0
+    assert np.array_equal(silent.grid.log_odds, told.grid.log_odds)
+
+
+def test_scans_of_one_time_are_counted_as_dropped() -> None:
+    scans = [each for scan in LOG.scans for each in (scan, scan)]
+    replay = run_replay(COARSE, Recording(log=replace(LOG, scans=scans)))
+    assert (replay.map_updates, replay.scans_dropped) == (60, 60)

@@ -32,7 +32,10 @@ def test_a_scan_that_sees_less_far_stays_as_it_is() -> None:
 
 
 def test_a_scan_that_does_not_tell_its_range_gets_one() -> None:
-    assert shortened(scan([1.0, 5.0], range_max=np.nan), 3.5).range_max == 3.5
+    for none in (np.nan, 0.0, -1.0, np.inf):
+        cut = shortened(scan([1.0, 5.0], range_max=none), 3.5)
+        assert cut.range_max == 3.5
+        assert cut.ranges.tolist() == [1.0, np.inf]
 
 
 def test_the_scan_of_the_log_is_not_changed() -> None:
@@ -49,6 +52,8 @@ def test_the_reach_of_a_log_is_that_of_the_scan_that_sees_farthest() -> None:
 def test_a_log_that_does_not_tell_its_reach_is_refused(range_max: float) -> None:
     with pytest.raises(TestbedError, match=r"a\.log: range_max"):
         reach_of(log(range_max))
+    assert reach_of(log(range_max), 3.5) == 3.5
+    assert reach_of(log(range_max, 8.0), 3.5) == 8.0
 
 
 @given(frame=st.tuples(st.floats(-50, 50), st.floats(-50, 50), st.floats(-3, 3)))

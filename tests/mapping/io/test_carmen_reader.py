@@ -188,6 +188,9 @@ def test_a_last_line_cut_anywhere_is_either_left_out_or_whole(tmp_path: Path, ke
         "ODOM 1 2 x 0 0 0 1.0 host 1.0",
         "ODOM 1 2 3",
         "ROBOTLASER1 0 -1 2 0.5 4.0 0.01 0 3 1 1 1 5 1 1",
+        robotlaser("3 1 1 1", settings="nan 2.0 0.5 4.0 0.01 0"),
+        robotlaser("3 1 1 1", settings="-1.0 inf 0.0 4.0 0.01 0"),
+        robotlaser("3 1 1 1", settings="-1.0 2.0 nan 4.0 0.01 0"),
         "PARAM robot_front_laser_max far",
     ],
 )

@@ -199,6 +199,13 @@ def test_without_transforms_the_lidar_is_taken_to_be_the_robot_and_a_warning_say
     assert "no transform" in caplog.text
 
 
+def test_a_bag_without_odometry_is_not_warned_of_besides(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    assert bag(tmp_path, ("/scan", scan())).odometry == []
+    assert caplog.text == ""
+
+
 def test_without_an_odometry_topic_the_transforms_tell_it(tmp_path: Path) -> None:
     steps = [link("odom", "base_footprint", 0.5 * i, when=2_000_000_000 * i) for i in range(3)]
     others = [link("map", "odom", 9.0), link("odom", "marker", 9.0)]
