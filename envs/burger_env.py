@@ -1,6 +1,7 @@
 """The Gymnasium environment of a Burger with its raw sensors."""
 
 import dataclasses
+import math
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -10,6 +11,7 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 
 from envs.burger_constants import CONTROL_PERIOD, IMU_RATE, ODOMETRY_RATE
+from envs.camera import checked_camera
 from envs.floor_plan import MAX_COORDINATE, FloorPlan
 from envs.imu import ACCEL_RANGE, GYRO_RANGE, ImuConfig
 from envs.lidar_noise import LidarConfig
@@ -157,7 +159,7 @@ class BurgerEnv(gym.Env[Observation, Action]):  # type: ignore[misc]  # mypy ski
         self.render_mode = render_mode
         self.action_space = _action_space()
         self.observation_space = _observation_space()
-        self._camera = camera
+        self._camera = checked_camera(camera)
         self._people = people
         self._lidar, self._odometry, self._imu = lidar, odometry, imu
         self._simulation = self._simulate(world)
@@ -282,4 +284,10 @@ def _checked_start(plan: FloorPlan, start: Any) -> tuple[float, float, float]:
         x, y, yaw = (float(value) for value in start)
     except (TypeError, ValueError) as error:
         raise TestbedError(f"start: {start!r}; must be three numbers (x, y, yaw)") from error
+    left, right, bottom, top = plan.bounds
+    if math.isfinite(x + y) and not (left <= x <= right and bottom <= y <= top):
+        raise TestbedError(
+            f"start: ({x:g}, {y:g}) is off the plan; must be x {left:g} to {right:g}, "
+            f"y {bottom:g} to {top:g}"
+        )
     return dataclasses.replace(plan, start=(x, y, yaw)).start

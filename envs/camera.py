@@ -16,6 +16,10 @@ _MAX_GEOMS = 10_000
 """Room for what one picture shows: solids, some 50 parts of the robot, the floor."""
 
 
+CAMERAS = ("chase", "portrait", "top")
+"""The cameras of every scene."""
+
+
 class SceneCamera:
     """Draws the dressed twin of a scene; the physics model is spared the robot's visible parts.
 
@@ -100,11 +104,19 @@ class SceneCamera:
         self._context.make_current()
 
 
+def checked_camera(name: str) -> str:
+    """The name of a camera that scenes have.
+
+    Raises:
+        TestbedError: It is none.
+    """
+    if name not in CAMERAS:
+        raise TestbedError(f"camera: {name!r}; must be one of {', '.join(CAMERAS)}")
+    return name
+
+
 def _view(model: mujoco.MjModel, camera: str, width: int, height: int) -> mujoco.MjvCamera:
     """The view through a camera; refuses ones that are not there and sizes that do not fit."""
-    names = [model.camera(i).name for i in range(model.ncam)]
-    if camera not in names:
-        raise TestbedError(f"camera: {camera!r}; must be one of {', '.join(sorted(names))}")
     most = model.vis.global_
     if not (1 <= width <= most.offwidth and 1 <= height <= most.offheight):
         raise TestbedError(
@@ -112,7 +124,8 @@ def _view(model: mujoco.MjModel, camera: str, width: int, height: int) -> mujoco
             f"{most.offwidth} x {most.offheight}"
         )
     view = mujoco.MjvCamera()
-    view.type, view.fixedcamid = mujoco.mjtCamera.mjCAMERA_FIXED, names.index(camera)
+    view.type = mujoco.mjtCamera.mjCAMERA_FIXED
+    view.fixedcamid = model.camera(checked_camera(camera)).id
     return view
 
 

@@ -70,9 +70,9 @@ def random_pedestrians(
 
 
 def check_people(count: int) -> None:
-    """Refuse a count that is no crowd."""
-    if not 0 <= count <= MAX_PEOPLE:
-        raise TestbedError(f"people: {count}; must be from 0 to {MAX_PEOPLE}")
+    """Refuse a count that is no crowd, or no whole number."""
+    if not isinstance(count, int | np.integer) or not 0 <= count <= MAX_PEOPLE:
+        raise TestbedError(f"people: {count}; must be from 0 to {MAX_PEOPLE}, a whole number")
 
 
 def _draw(

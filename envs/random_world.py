@@ -87,7 +87,7 @@ def parse_random_world(name: str) -> RandomWorld:
     if _RANGE.fullmatch(seed):
         raise _refused(name, "names many worlds; a range is for burger sweep")
     if not _NUMBER.fullmatch(seed):
-        raise _refused(name, f"seed {seed!r} is no whole number of 0 or more")
+        raise _refused(name, f"seed {seed!r} is no whole number of 0 to 18 digits")
     asked: dict[str, str] = {}
     for option in options:
         key, _, value = option.partition("=")

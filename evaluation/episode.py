@@ -42,8 +42,8 @@ class EpisodeConfig:
     """Everything that defines an episode; the same config gives the same episode."""
 
     world: str = "lim_room"
-    """A built-in world by name, or a floor plan file: YAML, map_server YAML, HouseExpo JSON, text
-    maze."""
+    """A built-in world by name, random:SEED, or a floor plan file: YAML, map_server YAML, HouseExpo
+    JSON, text maze."""
     mapper: str = "graph"
     """graph, scan_match, gmapping, ogm or occgridmapp."""
     navigator: str = "frontier"
@@ -79,7 +79,8 @@ class EpisodeConfig:
         if self.seed < 0:
             raise TestbedError(f"seed: {self.seed}; must be 0 or more")
         if not CONTROL_PERIOD <= self.time_limit < np.inf:
-            raise TestbedError(f"time_limit: {self.time_limit} s; must be finite and above 0.1")
+            least = f"must be finite and {CONTROL_PERIOD} or more"
+            raise TestbedError(f"time_limit: {self.time_limit} s; {least}")
         check_resolution(self.resolution)
 
 

@@ -52,8 +52,13 @@ class GridConfig:
         """Refuse figures that make no grid."""
         if not (np.isfinite(self.resolution) and self.resolution > 0.0):
             raise TestbedError(f"resolution: {self.resolution} m; must be a finite number above 0")
-        if self.rows < 1 or self.columns < 1:
-            raise TestbedError(f"grid size: {self.rows} x {self.columns} cells; must be at least 1")
+        if not np.all(np.isfinite(self.origin)):
+            raise TestbedError(f"origin: {self.origin} m; must be finite")
+        whole = all(isinstance(count, int | np.integer) for count in (self.rows, self.columns))
+        if not whole or self.rows < 1 or self.columns < 1:
+            raise TestbedError(
+                f"grid size: {self.rows} x {self.columns} cells; must be whole, at least 1"
+            )
         if self.most_cells < 1:
             raise TestbedError(f"most_cells: {self.most_cells}; must be at least 1")
 

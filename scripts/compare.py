@@ -21,7 +21,7 @@ class Compare:
     map: Annotated[Path, Positional]
     """The map's YAML, as map_server writes it."""
     world: str | None = None
-    """Truth: a built-in world by name, or a floor plan file."""
+    """Truth: a built-in world by name, random:SEED, or a floor plan file."""
     truth: Path | None = None
     """Truth: another map's YAML."""
     align: bool = False

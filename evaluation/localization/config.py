@@ -20,7 +20,7 @@ class LocalizationConfig:
     map: Path
     """The map's YAML, as map_server writes it; its frame must be the world's."""
     world: str
-    """A built-in world by name, or a floor plan file."""
+    """A built-in world by name, random:SEED, or a floor plan file."""
     filter: FilterName = "particle"
     """particle, histogram or ekf (which needs a known start)."""
     start: Literal["uniform", "known"] = "uniform"

@@ -73,7 +73,7 @@ PARTS = (
         "4.3.6, fig. 4.3",
         "plots in cells, start heading up",
         "mapping/thesis_plot.py",
-        "drive --mapper occgridmapp",
+        "thesis",
     ),
     _part(
         "5.1",

@@ -3,6 +3,7 @@
 import subprocess
 import sys
 import warnings
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
@@ -160,6 +161,7 @@ def test_options_choose_start_and_world() -> None:
         ({"start": (1.2, 1.3, 0.0)}, r"start: .*inside boxes\[0\]"),
         ({"start": (np.nan, 0.0, 0.0)}, "start: .*finite"),
         ({"start": (0.0, 0.0)}, "start: .*three numbers"),
+        ({"start": (30.0, 0.0, 0.0)}, r"start: \(30, 0\) is off the plan; must be x -1.55 to 3.05"),
         ({"world": "atlantis"}, "atlantis"),
         ({"pose": (0.0, 0.0, 0.0)}, "reset option: 'pose'"),
     ],
@@ -205,3 +207,16 @@ def test_odometry_yaw_chooses_the_source_of_the_heading() -> None:
         turned = np.mod(info["pose_world"][2] - start, 2.0 * np.pi)
         errors.append(abs(np.mod(observation["odometry"][-1, 3], 2.0 * np.pi) - turned))
     assert errors[1] < 0.01 < errors[0]
+
+
+@pytest.mark.parametrize(
+    ("wrong", "told"),
+    [
+        ({"people": 1.5}, "people: 1.5; must be from 0 to 100, a whole number"),
+        ({"people": "3"}, "people: 3; must be"),
+        ({"camera": "nope"}, "camera: 'nope'; must be one of chase, portrait, top"),
+    ],
+)
+def test_what_it_cannot_be_made_with_is_told_at_once(wrong: dict[str, Any], told: str) -> None:
+    with pytest.raises(TestbedError, match=told):
+        BurgerEnv(ROOM, **wrong)

@@ -1,3 +1,6 @@
+import math
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -110,3 +113,17 @@ def test_no_boxes_make_a_grid_larger_than_its_most_cells(
 def test_most_cells_below_one_make_no_grid() -> None:
     with pytest.raises(TestbedError, match="most_cells"):
         GridConfig(most_cells=0)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "told"),
+    [
+        ({"origin": (math.nan, 0.0)}, "origin"),
+        ({"origin": (0.0, math.inf)}, "origin"),
+        ({"rows": 1.5}, "grid size: 1.5 x 512"),
+        ({"columns": 0}, "grid size"),
+    ],
+)
+def test_figures_that_make_no_grid_are_refused(wrong: dict[str, Any], told: str) -> None:
+    with pytest.raises(TestbedError, match=told):
+        GridConfig(**wrong)
