@@ -14,7 +14,11 @@ class Mapper(Protocol):
 
     @property
     def grid(self) -> OccupancyGrid:
-        """The map so far."""
+        """The map so far.
+
+        Users of it look again at what lies within the lidar's reach of the robot, and at all of it
+        when its ``redraws`` has grown: a mapper that draws the map anew must count that up.
+        """
 
     @property
     def pose_map(self) -> Pose:

@@ -12,6 +12,7 @@ from mapping.messages import LaserScan
 from mapping.slam.hit_field import HitField
 from mapping.slam.scan_cloud import ScanCloud
 from mapping.slam.scan_matcher import Match, MatcherConfig, match_scan
+from tests.mapping.slam.fields import field_of
 from tests.mapping.slam.rooms import cloud_of, corridor, post, random_room, scan_of
 
 Array = NDArray[np.float64]
@@ -21,15 +22,6 @@ FINE_CELL, COARSE_CELL = 0.03, 0.05
 CELLS = st.sampled_from([FINE_CELL, COARSE_CELL])
 UNSURE = np.diag(np.square([0.1, 0.1, 0.1]))
 """Covariance of a prediction that is 10 cm and 6 degrees off, typically."""
-
-
-def field_of(clouds: list[ScanCloud], poses: list[Pose], cell: float) -> HitField:
-    """The field of scans around the origin."""
-    field = HitField(cell, 4.4, 1.0)
-    field.clear([0.0, 0.0])
-    for cloud, pose in zip(clouds, poses, strict=True):
-        field.add(pose, cloud.surface)
-    return field
 
 
 def sigmas(covariance: Array) -> Array:

@@ -14,6 +14,7 @@ from mapping.slam.graph_slam import GraphSlam
 from mapping.slam.hit_field import HitField
 from mapping.slam.scan_match import ScanMatch
 from mapping.slam.scan_matcher import MatcherConfig, match_scan, match_twice
+from tests.mapping.slam.fields import field_of
 from tests.mapping.slam.rooms import (
     RING_WAY,
     Period,
@@ -32,11 +33,9 @@ SURE = np.diag(np.square([0.02, 0.02, 0.05]))
 SEEDS = st.integers(0, 300)
 
 
-def field_of(walls: np.ndarray) -> HitField:
-    field = HitField(CELL, 4.4, 1.0)
-    field.clear([0.0, 0.0])
-    field.add(np.zeros(3), cloud_of(scan_of(walls, np.zeros(3)), CELL).surface)
-    return field
+def field_seen(walls: np.ndarray) -> HitField:
+    """The field of a scan from the origin."""
+    return field_of([cloud_of(scan_of(walls, np.zeros(3)), CELL)], [np.zeros(3)], CELL)
 
 
 @given(seed=SEEDS, slip=st.floats(0.19, 0.24), sign=st.sampled_from([-1.0, 1.0]))
@@ -49,7 +48,7 @@ def test_a_scan_far_outside_what_was_predicted_is_found(
     pose = np.array([*rng.uniform(-0.1, 0.1, 2), rng.uniform(-0.2, 0.2)])
     cloud = cloud_of(scan_of(walls, pose, rng), CELL)
     predicted = compose(pose, [0.03, -0.02, sign * slip])
-    match = match_twice(field_of(walls), cloud, predicted, SURE, CONFIG)
+    match = match_twice(field_seen(walls), cloud, predicted, SURE, CONFIG)
     apart = between(pose, match.pose)
     assert not match.refused
     # the map is one scan from elsewhere: two cells
@@ -61,7 +60,7 @@ def test_a_scan_far_outside_what_was_predicted_is_found(
 @settings(max_examples=40)
 def test_in_another_room_the_second_look_finds_no_more_than_the_first(seed: int) -> None:
     rng = np.random.default_rng(seed)
-    field = field_of(random_room(rng))
+    field = field_seen(random_room(rng))
     cloud = cloud_of(scan_of(random_room(rng), np.zeros(3), rng), CELL)
     first = match_scan(field, cloud, np.zeros(3), SURE, CONFIG)
     second = match_twice(field, cloud, np.zeros(3), SURE, CONFIG)
