@@ -78,7 +78,7 @@ def _window(
     reach: int,
 ) -> Window:
     """The part of the field that the points can come to lie in; never empty."""
-    spread = np.hypot(points[:, 0], points[:, 1]) * min(turn, 1.0)
+    spread = np.hypot(points[:, 0], points[:, 1]) * min(turn, 2.0)  # a chord is no longer
     placed = transform_points(center, points)
     margin = spread[:, None] + reach + 1.0
     left, bottom = np.floor((placed - margin).min(axis=0)).astype(int)
