@@ -4,7 +4,9 @@ A run that fails, or whose process dies, is told as a failure and harms no other
 keeps the peak memory in ``result.json`` that of the run.
 """
 
+import shutil
 import signal
+import sys
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
@@ -135,11 +137,23 @@ def _keep_failure(job: Job, outcome: Outcome) -> None:
 def _run(config: EpisodeConfig, folder: Path, sender: Connection) -> None:
     """Run one job in this process and send its outcome."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the parent's to handle
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # so that what is begun is taken away
     sender.send(_outcome_of(config, folder))
     sender.close()
 
 
 def _outcome_of(config: EpisodeConfig, folder: Path) -> Outcome:
+    """Run and write; a run that is ended from outside leaves no folder that was not there."""
+    is_new = not folder.exists()
+    try:
+        return _run_and_write(config, folder)
+    except SystemExit:
+        if is_new:
+            shutil.rmtree(folder, ignore_errors=True)
+        raise
+
+
+def _run_and_write(config: EpisodeConfig, folder: Path) -> Outcome:
     for earlier in ("result.json", FAILURE_FILE):  # it would vouch for this run
         (folder / earlier).unlink(missing_ok=True)
     try:

@@ -5,9 +5,11 @@ from dataclasses import replace
 from pathlib import Path
 from threading import Thread
 from time import sleep
+from unittest.mock import patch
 
 import pytest
 
+from evaluation import episode_pool
 from evaluation.episode import EpisodeConfig
 from evaluation.episode_pool import Failure, Outcome, run_episodes
 from evaluation.sweeps.run_record import read_run
@@ -85,6 +87,33 @@ def test_ctrl_c_ends_what_runs_and_keeps_what_ended(config: EpisodeConfig, tmp_p
         run_episodes(jobs, on_done=interrupt)
     assert (tmp_path / "a" / "result.json").is_file()
     assert not (tmp_path / "c").exists()
+
+
+def test_a_run_that_is_ended_while_it_is_written_leaves_nothing(
+    config: EpisodeConfig, tmp_path: Path
+) -> None:
+    folder = tmp_path / "a"
+    ended = patch("evaluation.episode_folder.write_map", side_effect=SystemExit(1))
+    with ended, pytest.raises(SystemExit):
+        episode_pool._outcome_of(config, folder)
+    assert not folder.exists()
+    folder.mkdir()
+    (folder / "notes.txt").write_text("mine")
+    with ended, pytest.raises(SystemExit):
+        episode_pool._outcome_of(config, folder)
+    assert (folder / "notes.txt").exists()
+
+
+def test_an_error_in_a_run_is_a_failure_that_keeps_the_map(
+    config: EpisodeConfig, tmp_path: Path
+) -> None:
+    folder = tmp_path / "a"
+    with patch("mapping.ogm.Ogm.finish", side_effect=ZeroDivisionError("a defect")):
+        outcome = episode_pool._outcome_of(config, folder)
+    assert isinstance(outcome, Failure)
+    assert outcome.reason == "ZeroDivisionError: a defect"
+    assert "Traceback" in outcome.details
+    assert (folder / "map.png").is_file()
 
 
 def test_no_processes_are_refused() -> None:
