@@ -9,6 +9,9 @@ LEG_BEHIND = 0.05
 ONE_LEG = 0.15
 """Points up to this far apart are of one leg [m]: it is 0.12 m thick."""
 
+LEGS = 2
+"""Legs of a person."""
+
 NO_LEGS: NDArray[np.float64] = np.zeros((0, 2))
 """Nobody."""
 
@@ -42,8 +45,23 @@ def parted(
     there = np.flatnonzero((gaps < gate).any(axis=0))
     if len(there) < 2:
         return [legs]
-    owners = gaps[:, there].argmin(axis=1)
+    owners = _owners(gaps[:, there])
     return [legs[owners == k] for k in range(len(there)) if np.any(owners == k)]
+
+
+def _owners(gaps: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Whose each leg is ``(n,)``, by how far it is from where each is expected ``(n, m)`` [m].
+
+    The nearest go together first, and nobody has more than two while others have none left to take.
+    """
+    owners = np.full(len(gaps), -1, dtype=np.int64)
+    taken = np.zeros(gaps.shape[1], dtype=np.int64)
+    for index in np.argsort(gaps, axis=None).tolist():
+        leg, person = divmod(index, gaps.shape[1])
+        if owners[leg] < 0 and taken[person] < LEGS:
+            owners[leg] = person
+            taken[person] += 1
+    return np.where(owners < 0, gaps.argmin(axis=1), owners)
 
 
 def has_neighbour(

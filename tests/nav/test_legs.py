@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from nav.legs import LEG_BEHIND
+from nav.legs import LEG_BEHIND, parted
 from nav.movers import Mover, Movers
 from tests.nav.scans import Room, views_of
 from tests.nav.test_movers import (
@@ -69,6 +69,23 @@ def test_two_who_pass_each_other_stay_two() -> None:
             apart.append(float(np.hypot(*(up(view.stamp) - down(view.stamp)))))
             assert len(known) == 2, f"at {view.stamp:.1f} s, {apart[-1]:.2f} m apart"
     assert min(apart) < 0.5
+
+
+def test_nobody_has_a_third_leg_while_another_stands_there_with_one() -> None:
+    """Two beside each other: a leg that strides to the first one's side is still the second's."""
+    expected = np.array([[0.0, 0.0], [0.5, 0.0]])
+    legs = np.array([[-0.1, 0.0], [0.1, 0.0], [0.22, 0.0], [0.6, 0.0]])
+    first, second = parted(legs, expected, gate=0.3)
+    assert first.tolist() == legs[:2].tolist()
+    assert second.tolist() == legs[2:].tolist()
+
+
+def test_legs_that_nobody_is_left_for_are_of_the_nearest() -> None:
+    expected = np.array([[0.0, 0.0], [0.5, 0.0]])
+    legs = np.array([[-0.1, 0.0], [0.0, 0.1], [0.1, 0.0], [0.4, 0.0], [0.6, 0.0]])
+    first, second = parted(legs, expected, gate=0.3)
+    assert len(first) == 3
+    assert len(second) == 2
 
 
 def test_who_turns_on_the_spot_keeps_the_pace_for_a_while() -> None:
