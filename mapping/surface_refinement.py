@@ -12,15 +12,11 @@ placed them.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import ndimage
 
-from mapping.deskew_kernels import aim
-from mapping.geometry import Pose
+from mapping.aimed_beams import AimedBeams
 from mapping.grid import OccupancyGrid
-from mapping.ogm import WIDEST_WEDGE, OgmConfig
-from mapping.scan_polygon import compare_neighbours
-from mapping.sensor_model import Beams, range_sigma
+from mapping.ogm import OgmConfig
 from mapping.surface_band import TILE, SurfaceBand, band_along
 from mapping.surface_distance_kernels import (
     COLUMNS,
@@ -68,40 +64,15 @@ class SurfaceRefinement:
         self._config = config
         self._band: SurfaceBand = band_along(grid, BAND)
 
-    def add(
-        self,
-        beams: Beams,
-        angles: NDArray[np.float64],
-        increment: float,
-        start_pose_map: Pose,
-        poses: Pose,
-    ) -> None:
-        """Take one scan.
-
-        Args:
-            beams: What its beams saw, at least one.
-            angles: Their directions in the sensor frame ``(n,)`` [rad].
-            increment: Angle between neighbours [rad].
-            start_pose_map: The frame of ``poses``, in the map ``(3,)``.
-            poses: Pose of base_footprint at each beam's time ``(n, 3)``.
-        """
-        config, resolution = self._config, self._grid.resolution
-        order = slice(None) if increment > 0.0 else slice(None, None, -1)
-        lengths, hits = beams.lengths[order], np.ascontiguousarray(beams.hits[order])
-        origins, directions, _ = aim(
-            start_pose_map,
-            np.ascontiguousarray(poses[order]),
-            config.lidar_pose_base,
-            angles[order],
-            lengths,
-        )
-        sigmas = range_sigma(lengths, config.range_noise)
-        pairs = compare_neighbours(directions, lengths, sigmas, hits, WIDEST_WEDGE * abs(increment))
-        table = np.empty((len(lengths), COLUMNS))
-        table[:, [X, Y]] = (origins - self._grid.origin) / resolution
-        table[:, [DX, DY]] = directions
-        table[:, LENGTH], table[:, SIGMA] = lengths / resolution, sigmas / resolution
-        table[:, HIT], table[:, PAIR] = hits, pairs
+    def add(self, beams: AimedBeams) -> None:
+        """Take one scan."""
+        resolution = self._grid.resolution
+        table = np.empty((len(beams.lengths), COLUMNS))
+        table[:, [X, Y]] = (beams.origins - self._grid.origin) / resolution
+        table[:, [DX, DY]] = beams.directions
+        table[:, LENGTH] = beams.lengths / resolution
+        table[:, SIGMA] = beams.sigmas / resolution
+        table[:, HIT], table[:, PAIR] = beams.hits, beams.pairs
         band = self._band
         add_distances(
             band.cells,

@@ -4,11 +4,15 @@ Drawing anew is spread over many updates on a second grid, so that no update tak
 done the robot and its scans stay in the old map's frame, so that map and pose always fit.
 """
 
+from collections.abc import Iterator
+
 import numpy as np
 
+from mapping.aimed_beams import AimedBeams
 from mapping.geometry import Pose, between, compose
 from mapping.grid import OccupancyGrid
 from mapping.ogm import OgmConfig
+from mapping.poles import PoleFinder
 from mapping.slam.keyframe_graph import KeyframeGraph
 from mapping.slam.metric_scale import grown, scaled
 from mapping.slam.sweep import Sweep
@@ -97,13 +101,26 @@ class MapPainter:
         self._next_grid = None
 
     def refine(self) -> None:
-        """Move the map's surfaces to where all kept scans say, from their corrected poses."""
-        poses, scale = self.corrected(self._graph.poses), self.scale
-        refinement = SurfaceRefinement(self.grid, self._config)
-        for keyframe, place, sweep in self._kept:
-            sweep.measure(refinement, compose(poses[keyframe], scaled(place, scale)), scale)
+        """Move the map's surfaces to where all kept scans say, and draw the poles they saw."""
+        self._drawn, self._drawn_scale = self.corrected(self._graph.poses), self.scale
+        refinement, finder = SurfaceRefinement(self.grid, self._config), PoleFinder()
+        for beams in self._aimed():
+            refinement.add(beams)
+            finder.spot(beams)
         refinement.write()
-        self._drawn, self._drawn_scale = poses, scale
+        if finder.gather():
+            for beams in self._aimed():
+                finder.look(beams)
+            finder.write(self.grid, self._config)
+
+    def _aimed(self) -> Iterator[AimedBeams]:
+        """The kept scans' beams in the map as it is drawn, oldest first."""
+        scale = self._drawn_scale
+        for keyframe, place, sweep in self._kept:
+            pose_map = compose(self._drawn[keyframe], scaled(place, scale))
+            beams = sweep.aimed(self._config, pose_map, scale)
+            if beams is not None:
+                yield beams
 
     def _extended(self, drawn: Pose, scale: float) -> Pose:
         """Drawn poses with those of newer keyframes, each where it lies from the one before it."""

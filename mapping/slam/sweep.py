@@ -5,12 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from mapping.aimed_beams import AimedBeams, aim_beams
 from mapping.geometry import Pose
 from mapping.grid import OccupancyGrid
 from mapping.messages import LaserScan
 from mapping.ogm import OgmConfig, draw_beams
 from mapping.sensor_model import Beams
-from mapping.surface_refinement import SurfaceRefinement
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -39,11 +39,12 @@ class Sweep:
             beams, angles, poses = self._in_metres(scale)
             draw_beams(grid, config, beams, angles, self.angle_increment, pose_map, poses)
 
-    def measure(self, refinement: SurfaceRefinement, pose_map: Pose, scale: float = 1.0) -> None:
-        """Tell where surfaces lie, as taken from a pose; arguments as those of ``draw``."""
-        if len(self.indices) > 0:
-            beams, angles, poses = self._in_metres(scale)
-            refinement.add(beams, angles, self.angle_increment, pose_map, poses)
+    def aimed(self, config: OgmConfig, pose_map: Pose, scale: float = 1.0) -> AimedBeams | None:
+        """The beams in the map, None if there are none; arguments as those of ``draw``."""
+        if len(self.indices) == 0:
+            return None
+        beams, angles, poses = self._in_metres(scale)
+        return aim_beams(config, beams, angles, self.angle_increment, pose_map, poses)
 
     def _in_metres(self, scale: float) -> tuple[Beams, NDArray[np.float64], Pose]:
         """The beams, their directions ``(n,)`` [rad], and the robot's poses at them ``(n, 3)``."""
