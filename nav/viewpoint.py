@@ -122,9 +122,9 @@ class ViewpointFinder:
             key = self._key(frontier)
             is_far = frontier.distance_to(robot) > self.config.keep_beyond
             places = kept.get(key) if is_far else None
-            self._kept[key] = places = (
-                self._places(field, frontier, visited) if places is None else places
-            )
+            if places is None:
+                places = self._places(field, frontier, visited, per_metre)
+            self._kept[key] = places
             viewpoints += self._worthwhile(field, frontier, places, per_metre)
         return viewpoints
 
@@ -137,13 +137,21 @@ class ViewpointFinder:
         x, y = np.round(frontier.middle / KEY_RESOLUTION).astype(int).tolist()
         return x, y, len(frontier.cells)
 
-    def _places(self, field: CostField, frontier: Frontier, visited: NDArray[np.bool_]) -> _Places:
+    def _places(
+        self,
+        field: CostField,
+        frontier: Frontier,
+        visited: NDArray[np.bool_],
+        per_metre: float,
+    ) -> _Places:
         """Places that see a frontier, and what each would show [m2].
 
-        Those that see its middle; if none does, those that see another part of it. The cheapest
-        from each distance, and one square on if that is asked for.
+        Those that see its middle; if none does that is worth the way, those that see another part
+        of it as well, until one is. Of each part the cheapest from each distance, and one square
+        on if that is asked for.
         """
         costmap, config = field.costmap, self.config
+        found: _Places = []
         for part in _parts(costmap, frontier, config.part_spacing):
             cells = {
                 _view_cell(field, part, visited, distance, config)
@@ -151,12 +159,14 @@ class ViewpointFinder:
             }
             cells.add(_cell_square_on(field, frontier, part, visited, config))
             cells.discard(NOWHERE)
-            if cells:
-                return [
-                    (costmap.cell_to_world(cell), _gain(costmap, cell, config))
-                    for cell in sorted(cells)
-                ]
-        return []
+            places = [
+                (costmap.cell_to_world(cell), _gain(costmap, cell, config))
+                for cell in sorted(cells)
+            ]
+            found += places
+            if self._worthwhile(field, frontier, places, per_metre):
+                break
+        return found
 
     def _worthwhile(
         self, field: CostField, frontier: Frontier, places: _Places, per_metre: float

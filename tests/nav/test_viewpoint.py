@@ -66,6 +66,21 @@ def test_a_frontier_whose_middle_no_place_sees_is_looked_at_by_another_part_of_i
     assert ViewpointFinder().find(field, [slit], VisitedPlaces().on(costmap), HERE)
 
 
+def test_a_frontier_whose_middle_shows_too_little_is_looked_at_by_another_part_of_it() -> None:
+    """A shadow along a passage; at its far end a way goes off between two cabinets."""
+    wall, passage, shadow = 92 * "#", f"#{90 * '.'}#", f"#{90 * '?'}#"
+    way_off, behind = f"{80 * '#'}{7 * '?'}{5 * '#'}", f"{60 * '#'}{31 * '?'}#"
+    lines = [wall, *8 * [passage], shadow, *8 * [way_off], *16 * [behind], wall]
+    costmap, robot = costmap_of(grid_from_text("\n".join(lines))), np.array([0.3, 1.5])
+    (border,) = find_frontiers(costmap, FrontierConfig())
+    assert border.middle[0] == pytest.approx(2.3, abs=0.06)
+    finder = ViewpointFinder(ViewpointConfig(min_gain=0.3, min_share_per_metre=0.0))
+    field = CostField.around(costmap, robot)
+    (found,) = finder.find(field, [border], VisitedPlaces().on(costmap), robot)
+    assert found.gain > 0.5
+    assert 4.0 < found.place[0] < 4.35
+
+
 def test_a_place_where_the_robot_has_stood_promises_nothing_any_more() -> None:
     costmap = costmap_of(grid_from_text(ROOM_WITH_UNKNOWN_EAST))
     visited = VisitedPlaces()
