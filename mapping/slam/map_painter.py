@@ -10,6 +10,7 @@ import numpy as np
 
 from mapping.aimed_beams import AimedBeams
 from mapping.geometry import Pose, between, compose
+from mapping.grazed_walls import GrazedWalls
 from mapping.grid import OccupancyGrid
 from mapping.ogm import OgmConfig
 from mapping.poles import PoleFinder
@@ -101,13 +102,16 @@ class MapPainter:
         self._next_grid = None
 
     def refine(self) -> None:
-        """Move the map's surfaces to where all kept scans say, and draw the poles they saw."""
+        """Move surfaces to where all kept scans say, close walls, and draw the poles they saw."""
         self._drawn, self._drawn_scale = self.corrected(self._graph.poses), self.scale
         refinement, finder = SurfaceRefinement(self.grid, self._config), PoleFinder()
+        grazed = GrazedWalls(self.grid)
         for beams in self._aimed():
             refinement.add(beams)
+            grazed.add(beams)
             finder.spot(beams)
         refinement.write()
+        grazed.write(self._config)
         if finder.gather():
             for beams in self._aimed():
                 finder.look(beams)
